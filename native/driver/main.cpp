@@ -1,0 +1,128 @@
+// Renders a scene snapshot without Blender: benchmarks, and checks on machines that have a GPU but
+// no Blender. Writes a PFM picture (linear, Combined) and the statistics.
+#include "base/error.h"
+#include "engine/engine.h"
+#include "engine/snapshot.h"
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <vector>
+
+namespace {
+
+using panoptes::fail;
+
+constexpr const char* kUsage =
+    "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
+    "                       [--repeat N] [--software]\n";
+
+struct Arguments {
+  std::string scene, output, stats;
+  int width = 0, height = 0, samples = 0, repeat = 1;
+  bool software = false;
+};
+
+int positive(const std::string& option, const std::string& text) {
+  size_t used = 0;
+  int value = 0;
+  try {
+    value = std::stoi(text, &used);
+  } catch (const std::exception&) {
+  }
+  if (used != text.size() || value < 1)
+    fail("{} takes a whole number from 1, not '{}': see --help", option, text);
+  return value;
+}
+
+Arguments parse(const std::vector<std::string>& words) {
+  Arguments a;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    const auto value = [&]() -> const std::string& {
+      if (i + 1 >= words.size()) fail("{} needs a value: see --help", word);
+      return words[++i];
+    };
+    if (word == "-o") a.output = value();
+    else if (word == "--stats") a.stats = value();
+    else if (word == "--samples") a.samples = positive(word, value());
+    else if (word == "--repeat") a.repeat = positive(word, value());
+    else if (word == "--software") a.software = true;
+    else if (word == "--size") {
+      const std::string& size = value();
+      const size_t x = size.find('x');
+      if (x == std::string::npos) fail("--size takes WxH, not '{}': see --help", size);
+      a.width = positive(word, size.substr(0, x));
+      a.height = positive(word, size.substr(x + 1));
+    } else if (!word.empty() && word[0] == '-') fail("unknown option '{}': see --help", word);
+    else if (a.scene.empty()) a.scene = word;
+    else fail("more than one scene was given: name one snapshot");
+  }
+  if (a.scene.empty()) fail("no scene was given: name a snapshot, see --help");
+  return a;
+}
+
+void write_pfm(const std::string& path, int width, int height, const std::vector<float>& rgba) {
+  std::ofstream file(path, std::ios::binary);
+  file << "PF\n" << width << ' ' << height << "\n-1.0\n";
+  for (size_t i = 0; i < rgba.size(); i += 4)
+    file.write(reinterpret_cast<const char*>(&rgba[i]), 12);
+  file.close();
+  if (!file) fail("picture '{}' cannot be written: check the folder and the free space", path);
+}
+
+void run(const Arguments& arguments) {
+  panoptes::engine::Engine engine({.prefer_software = arguments.software});
+  panoptes::engine::RenderRequest request = engine.edit([&](panoptes::scene::Scene& scene) {
+    return panoptes::engine::read_snapshot(arguments.scene, scene);
+  });
+  if (arguments.samples) {
+    request.first_sample = 0;
+    request.last_sample = uint32_t(arguments.samples);
+  }
+  if (arguments.width) {
+    // The snapshot's camera keeps its height of view.
+    request.camera.projection[0][0] *= double(request.camera.width) / request.camera.height *
+                                       arguments.height / arguments.width;
+    request.camera.width = arguments.width;
+    request.camera.height = arguments.height;
+  }
+  request.passes.set(size_t(panoptes::film::Pass::kCombined));
+  for (int i = 0; i < arguments.repeat; ++i) {
+    const auto job = engine.render(request);
+    while (!job->wait(0.1)) {
+    }
+    job->check();
+    const panoptes::engine::RenderStats stats = job->stats();
+    fmt::print(stderr, "{}: {} samples, build {:.1f} ms, trace {:.1f} ms\n", stats.device,
+               stats.samples, stats.build_ms, stats.trace_ms);
+    if (i + 1 < arguments.repeat) continue;
+    if (!arguments.stats.empty()) {
+      std::ofstream file(arguments.stats);
+      file << stats.to_json() << '\n';
+      if (!file) fail("statistics '{}' cannot be written: check the folder", arguments.stats);
+    }
+    if (!arguments.output.empty())
+      write_pfm(arguments.output, stats.width, stats.height,
+                job->read(panoptes::film::Pass::kCombined));
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::vector<std::string> list(words + 1, words + count);
+  for (const std::string& word : list)
+    if (word == "-h" || word == "--help") {
+      std::cout << kUsage;
+      return 0;
+    }
+  try {
+    run(parse(list));
+  } catch (const std::exception& error) {
+    std::cerr << "panoptes_driver: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,136 @@
+#include "engine/engine.h"
+
+#include "base/error.h"
+#include "engine/render_thread.h"
+
+#include <future>
+
+namespace panoptes::engine {
+
+std::string Job::status() const {
+  std::lock_guard lock(mutex_);
+  return status_;
+}
+
+bool Job::wait(double seconds) {
+  std::unique_lock lock(mutex_);
+  return ended_condition_.wait_for(lock, std::chrono::duration<double>(seconds),
+                                   [&] { return ended_; });
+}
+
+void Job::check() const {
+  std::lock_guard lock(mutex_);
+  if (!error_.empty()) throw Error(error_);
+}
+
+uint32_t Job::samples_ready() const {
+  std::lock_guard lock(mutex_);
+  return samples_ready_;
+}
+
+std::vector<float> Job::read(film::Pass pass) const {
+  std::lock_guard lock(mutex_);
+  const auto found = pixels_.find(pass);
+  if (found == pixels_.end())
+    fail("pass '{}' is not there yet: it was not asked for, or the render has not come that far",
+         pass == film::Pass::kCount ? "?" : film::info(pass).name);
+  return found->second;
+}
+
+RenderStats Job::stats() const {
+  std::lock_guard lock(mutex_);
+  return stats_;
+}
+
+void Job::publish(film::Pass pass, std::vector<float> pixels, uint32_t samples) {
+  std::lock_guard lock(mutex_);
+  pixels_[pass] = std::move(pixels);
+  samples_ready_ = samples;
+}
+
+void Job::set_status(std::string text, float progress) {
+  progress_ = progress;
+  std::lock_guard lock(mutex_);
+  status_ = std::move(text);
+}
+
+void Job::end(std::string error) {
+  {
+    std::lock_guard lock(mutex_);
+    ended_ = true;
+    status_ = error.empty() ? "done" : "failed";
+    error_ = std::move(error);
+  }
+  ended_condition_.notify_all();
+}
+
+Engine::Engine(const gl::ContextOptions& options) {
+  std::promise<std::string> promise;
+  std::future<std::string> started = promise.get_future();
+  thread_ = std::thread([this, options, &promise] {
+    run(options, [&promise](std::string error) { promise.set_value(std::move(error)); });
+  });
+  const std::string error = started.get();
+  if (!error.empty()) {
+    thread_.join();
+    closed_ = true;
+    throw Error(error);
+  }
+}
+
+Engine::~Engine() { close(); }
+
+void Engine::close() {
+  if (closed_.exchange(true)) return;
+  {
+    std::lock_guard lock(queue_mutex_);
+    for (const auto& job : queue_) job->cancel();
+    if (current_) current_->cancel();
+  }
+  queue_condition_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Engine::require_open() const {
+  if (closed_) fail("the render engine has been closed: start it again");
+}
+
+std::shared_ptr<Job> Engine::render(RenderRequest request) {
+  require_open();
+  request.check();
+  request.camera.check(device_.max_texture_size);
+  auto job = std::make_shared<Job>(std::move(request));
+  {
+    std::lock_guard lock(queue_mutex_);
+    queue_.push_back(job);
+  }
+  queue_condition_.notify_one();
+  return job;
+}
+
+void Engine::run(const gl::ContextOptions& options, std::function<void(std::string)> started) {
+  std::unique_ptr<RenderThread> renderer;
+  try {
+    renderer = std::make_unique<RenderThread>(options);
+    device_ = renderer->device();
+  } catch (const std::exception& error) {
+    renderer.reset();
+    started(error.what());
+    return;
+  }
+  started("");
+  while (true) {
+    std::shared_ptr<Job> job;
+    {
+      std::unique_lock lock(queue_mutex_);
+      current_.reset();
+      queue_condition_.wait(lock, [&] { return closed_ || !queue_.empty(); });
+      if (queue_.empty()) break;  // closed, and every job has been told
+      job = current_ = queue_.front();
+      queue_.pop_front();
+    }
+    renderer->render(*job, scene_, scene_mutex_);
+  }
+}
+
+}  // namespace panoptes::engine

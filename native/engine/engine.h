@@ -1,0 +1,100 @@
+// The public C++ API: one render thread that owns one GL context, the scene that callers edit, and
+// jobs that render it. Callers never touch GL; edits are cheap copies and every call is safe from
+// any thread.
+#pragma once
+
+#include "engine/request.h"
+#include "gl/context.h"
+#include "scene/scene.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace panoptes::engine {
+
+// One frame under way. Lives as long as anybody holds it.
+class Job {
+ public:
+  explicit Job(RenderRequest request) : request_(std::move(request)) {}
+
+  const RenderRequest& request() const { return request_; }
+  void cancel() { cancelled_ = true; }
+  bool cancelled() const { return cancelled_; }
+  float progress() const { return progress_; }  // 0 .. 1
+  std::string status() const;                   // what runs now
+  // Waits up to `seconds`; true when the job has ended, however it ended.
+  bool wait(double seconds);
+  // Throws Error if the job failed.
+  void check() const;
+  // Samples in the picture that read() gives; grows while a live job runs.
+  uint32_t samples_ready() const;
+  // A pass, channels a pixel, rows bottom to top. Live jobs offer Combined after each sample, all
+  // jobs offer everything at their end. Throws Error when it is not there.
+  std::vector<float> read(film::Pass pass) const;
+  RenderStats stats() const;
+
+ private:
+  friend class RenderThread;
+  void publish(film::Pass pass, std::vector<float> pixels, uint32_t samples);
+  void set_status(std::string text, float progress);
+  void end(std::string error);
+
+  RenderRequest request_;
+  std::atomic<bool> cancelled_{false};
+  std::atomic<float> progress_{0};
+  mutable std::mutex mutex_;
+  std::condition_variable ended_condition_;
+  bool ended_ = false;
+  std::string error_, status_ = "waiting";
+  uint32_t samples_ready_ = 0;
+  std::map<film::Pass, std::vector<float>> pixels_;
+  RenderStats stats_;
+};
+
+class Engine {
+ public:
+  // Starts the render thread; throws Error when no driver will do.
+  explicit Engine(const gl::ContextOptions& options = {});
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  const gl::DeviceInfo& device() const { return device_; }
+
+  // Cancels what runs, ends the thread. Idempotent; every later call throws Error.
+  void close();
+
+  // Runs `change` on the scene, between frames' uploads.
+  template <class F>
+  auto edit(F&& change) {
+    require_open();
+    std::lock_guard lock(scene_mutex_);
+    return change(scene_);
+  }
+
+  // Queues a frame of the scene as it is when the frame's turn comes. Throws Error when the request
+  // makes no sense.
+  std::shared_ptr<Job> render(RenderRequest request);
+
+ private:
+  void require_open() const;
+  void run(const gl::ContextOptions& options, std::function<void(std::string)> started);
+
+  gl::DeviceInfo device_;
+  std::mutex scene_mutex_;
+  scene::Scene scene_;
+  std::mutex queue_mutex_;
+  std::condition_variable queue_condition_;
+  std::deque<std::shared_ptr<Job>> queue_;
+  std::shared_ptr<Job> current_;
+  std::atomic<bool> closed_{false};
+  std::thread thread_;
+};
+
+}  // namespace panoptes::engine

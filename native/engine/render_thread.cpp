@@ -1,0 +1,148 @@
+#include "engine/render_thread.h"
+
+#include "base/error.h"
+#include "gl/counters.h"
+#include "plan/plan.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace panoptes::engine {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// A live picture is copied out at most this often; more would cost more than it shows.
+constexpr double kLiveIntervalMs = 100;
+// The estimated error needs a copy of the film: look at it every so many samples.
+constexpr uint32_t kErrorInterval = 4;
+
+std::vector<EffectReport> report(const plan::Effects& plan,
+                                 const std::vector<gl::PassTime>& times) {
+  std::vector<EffectReport> effects;
+  for (const plan::Effect& effect : plan) {
+    EffectReport r{effect, 0};
+    for (const gl::PassTime& time : times)
+      if (time.name == effect.name) r.ms += time.ms;
+    effects.push_back(std::move(r));
+  }
+  return effects;
+}
+
+}  // namespace
+
+RenderThread::RenderThread(const gl::ContextOptions& options)
+    : context_(options), timer_(context_.device()), gpu_scene_(context_.device()),
+      realtime_(context_.device(), programs_, timer_) {}
+
+void RenderThread::render(Job& job, scene::Scene& scene, std::mutex& mutex) {
+  std::string error;
+  try {
+    if (!job.cancelled()) render_frame(job, scene, mutex);
+  } catch (const realtime::Cancelled&) {
+  } catch (const std::bad_alloc&) {
+    error = "the computer ran out of memory: lower the resolution or simplify the scene";
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+  job.end(std::move(error));
+}
+
+void RenderThread::publish(Job& job, const film::PassSet& passes, uint32_t samples) {
+  for (int i = 0; i < film::kPassCount; ++i)
+    if (passes[size_t(i)])
+      job.publish(film::Pass(i),
+                  film_.read(film::Pass(i), int(samples), job.request().exposure), samples);
+}
+
+void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex) {
+  const Clock::time_point start = Clock::now();
+  const RenderRequest& request = job.request();
+  timer_.reset();
+
+  // Take over what changed. The plan is made from the same state of the scene.
+  job.set_status("uploading the scene", 0);
+  const uint32_t wanted = request.last_sample - request.first_sample;
+  plan::Effects plan;
+  std::vector<std::string> warnings;
+  {
+    std::lock_guard lock(mutex);
+    gpu_scene_.update(scene);
+    plan = plan::make_plan(scene.facts(), {int(wanted), request.soft_shadows,
+                                           request.force_all_effects, request.passes});
+    film::PassSet passes = request.passes;
+    if (request.force_all_effects) passes.set();
+    film_.start(request.camera.width, request.camera.height, passes, wanted > 1);
+    realtime::Settings settings;
+    settings.shadows.resolution = request.shadow_resolution;
+    settings.seed = request.seed;
+    settings.filter_width = request.filter_width;
+    job.set_status("compiling shaders", 0);
+    const rasterize::GBufferOptions surfaces{.glossy = plan::runs(plan, "glossy"),
+                                             .emission = plan::runs(plan, "emission")};
+    gpu_scene_.check_programs(
+        [&](const gpu_scene::GpuMaterial& material) {
+          programs_.get(rasterize::surface_program(material, surfaces));
+        },
+        [&](const gpu_scene::GpuShading& world) {
+          programs_.get(realtime::background_program(world));
+        });
+    realtime_.begin(request.camera, plan, settings, scene, gpu_scene_);
+    warnings = scene.warnings();
+  }
+  for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);
+  glFinish();
+  gl::check_errors("upload");
+  const double build_ms = ms_since(start);
+
+  const Clock::time_point trace_start = Clock::now();
+  Clock::time_point last_live = start;
+  uint32_t done = 0;
+  while (done < wanted) {
+    job.set_status(fmt::format("sample {} of {}", done + 1, wanted), float(done) / float(wanted));
+    realtime_.render_sample(request.first_sample + done, request.first_sample, request.last_sample,
+                            gpu_scene_, film_, job.cancelled_);
+    ++done;
+    gl::check_errors("render");
+    if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
+      film::PassSet combined;
+      combined.set(size_t(film::Pass::kCombined));
+      publish(job, combined, done);
+      last_live = Clock::now();
+    }
+    // Stop before a sample that would overrun the budget.
+    const double spent = ms_since(start), each = ms_since(trace_start) / done;
+    if (request.time_budget > 0 && spent + each > request.time_budget * 1000) break;
+    if (request.noise_threshold > 0 && done % kErrorInterval == 0 && done < wanted) {
+      const std::optional<double> error = film_.estimated_error(int(done));
+      if (error && *error < request.noise_threshold) break;
+    }
+  }
+  glFinish();
+
+  RenderStats stats;
+  stats.trace_ms = ms_since(trace_start);
+  publish(job, request.passes, done);
+  const std::vector<gl::PassTime> times = timer_.times();
+  stats.device = context_.device().renderer;
+  stats.width = request.camera.width;
+  stats.height = request.camera.height;
+  stats.samples = done;
+  stats.effects = report(plan, times);
+  for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
+  stats.build_ms = build_ms;
+  stats.total_ms = ms_since(start);
+  stats.memory_bytes = gl::counters().memory_bytes;
+  stats.estimated_error = film_.estimated_error(int(done));
+  stats.warnings = std::move(warnings);
+  job.set_status("done", 1);
+  std::lock_guard lock(job.mutex_);
+  job.stats_ = std::move(stats);
+}
+
+}  // namespace panoptes::engine

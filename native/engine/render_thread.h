@@ -1,0 +1,37 @@
+// What lives on the render thread: the context and all that was made in it.
+#pragma once
+
+#include "engine/engine.h"
+#include "film/film.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+#include "gpu_scene/gpu_scene.h"
+#include "realtime/realtime.h"
+
+#include <mutex>
+
+namespace panoptes::engine {
+
+class RenderThread {
+ public:
+  explicit RenderThread(const gl::ContextOptions& options);
+
+  const gl::DeviceInfo& device() const { return context_.device(); }
+
+  // Renders the job and ends it, whatever happens. Holds `mutex` only while the scene is uploaded.
+  void render(Job& job, scene::Scene& scene, std::mutex& mutex);
+
+ private:
+  void render_frame(Job& job, scene::Scene& scene, std::mutex& mutex);
+  void publish(Job& job, const film::PassSet& passes, uint32_t samples);
+
+  // Declared first, destroyed last: everything below holds GL objects.
+  gl::Context context_;
+  gl::ProgramCache programs_;
+  gl::PassTimer timer_;
+  gpu_scene::GpuScene gpu_scene_;
+  film::Film film_;
+  realtime::Realtime realtime_;
+};
+
+}  // namespace panoptes::engine

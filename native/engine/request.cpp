@@ -1,0 +1,62 @@
+#include "engine/request.h"
+
+#include "base/error.h"
+
+#include <cmath>
+
+namespace panoptes::engine {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (static_cast<unsigned char>(c) < 0x20)
+      result += fmt::format("\\u{:04x}", int(c));
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+template <class List, class Write>
+std::string array(const List& list, Write write) {
+  std::string result = "[";
+  for (const auto& item : list) result += (result.size() > 1 ? ", " : "") + write(item);
+  return result + "]";
+}
+
+}  // namespace
+
+void RenderRequest::check() const {
+  if (last_sample <= first_sample)
+    fail("samples {} to {} are an empty range: ask for at least one sample", first_sample,
+         last_sample);
+  if (shadow_resolution < 16 || shadow_resolution > 8192)
+    fail("a shadow resolution of {} is out of range: choose 16 to 8192", shadow_resolution);
+  if (!(filter_width >= 0 && filter_width <= 10))
+    fail("a pixel filter of {} pixels is out of range: choose 0 to 10", filter_width);
+  if (!std::isfinite(exposure)) fail("the film's exposure is not finite: set it to 1");
+  if (!(time_budget >= 0) || !(noise_threshold >= 0))
+    fail("time budget and noise threshold must not be negative: set them to 0 to switch them off");
+}
+
+std::string RenderStats::to_json() const {
+  const auto effect = [](const EffectReport& e) {
+    return fmt::format("{{\"name\": {}, \"runs\": {}, \"reason\": {}, \"ms\": {:.3f}}}",
+                       quoted(e.name), e.runs, quoted(e.reason), e.ms);
+  };
+  const auto pass = [](const std::pair<std::string, double>& p) {
+    return fmt::format("{{\"name\": {}, \"ms\": {:.3f}}}", quoted(p.first), p.second);
+  };
+  return fmt::format(
+      "{{\"device\": {}, \"size\": [{}, {}], \"samples\": {}, \"effects\": {}, \"passes\": {}, "
+      "\"build_ms\": {:.3f}, \"trace_ms\": {:.3f}, \"total_ms\": {:.3f}, \"rays\": {}, "
+      "\"memory_bytes\": {}, \"estimated_error\": {}, \"warnings\": {}}}",
+      quoted(device), width, height, samples, array(effects, effect), array(passes, pass), build_ms,
+      trace_ms, total_ms, rays, memory_bytes,
+      estimated_error ? fmt::format("{:.6g}", *estimated_error) : "null", array(warnings, quoted));
+}
+
+}  // namespace panoptes::engine

@@ -1,0 +1,52 @@
+// What a caller asks of a frame, and what it is told of it.
+#pragma once
+
+#include "film/passes.h"
+#include "gpu_scene/view.h"
+#include "plan/effect.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace panoptes::engine {
+
+struct RenderRequest {
+  gpu_scene::Camera camera;
+  uint32_t first_sample = 0, last_sample = 1;  // half-open
+  uint32_t seed = 0;
+  film::PassSet passes;
+  float filter_width = 1.5f;    // pixels, to each side
+  float exposure = 1.0f;        // multiplies light passes
+  bool force_all_effects = false;
+  bool live = false;            // Combined can be read while the frame renders
+  int shadow_resolution = 2048; // texels a side, 16 .. 8192
+  bool soft_shadows = true;
+  double time_budget = 0;       // s; 0: none. At least one sample is rendered.
+  double noise_threshold = 0;   // relative; 0: none
+
+  // Throws Error with a sentence when a value is out of range.
+  void check() const;
+};
+
+struct EffectReport : plan::Effect {
+  double ms = 0;  // of the passes that run for it alone
+};
+
+struct RenderStats {
+  std::string device;
+  int width = 0, height = 0;
+  uint32_t samples = 0;  // rendered
+  std::vector<EffectReport> effects;
+  std::vector<std::pair<std::string, double>> passes;  // name, ms
+  double build_ms = 0, trace_ms = 0, total_ms = 0;
+  int64_t rays = 0;
+  int64_t memory_bytes = 0;
+  std::optional<double> estimated_error;
+  std::vector<std::string> warnings;
+
+  std::string to_json() const;
+};
+
+}  // namespace panoptes::engine

@@ -1,0 +1,24 @@
+// Points for the samples of a picture: where in its pixel a sample looks, which point of a lamp it
+// uses. Reproducible from the seed and the sample's index alone, so that ranges of samples can be
+// rendered apart.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+
+namespace panoptes::film {
+
+// The `index`-th point of a sequence in [0,1)^2 that fills the square evenly at every length (the
+// R2 sequence: additive recurrence by the plastic number, Roberts 2018), shifted by a random offset
+// that depends on `seed` and `dimension`.
+glm::vec2 sample_point(uint32_t index, uint32_t seed, uint32_t dimension);
+
+// The same in one dimension, by the golden ratio.
+float sample_value(uint32_t index, uint32_t seed, uint32_t dimension);
+
+// Maps u in [0,1) to an offset from the pixel's centre, in pixels, distributed as the
+// Blackman-Harris window that spans -width .. width; Cycles' default filter has width 1.5.
+float blackman_harris_offset(float u, float width);
+
+}  // namespace panoptes::film

@@ -1,0 +1,40 @@
+// Makes views: of the camera with its place in a pixel, and of a lamp's shadow map.
+#pragma once
+
+#include "gpu_scene/view_shared.h"
+
+#include <glm/glm.hpp>
+
+namespace panoptes::gpu_scene {
+
+// A camera as Blender gives it. Throws nothing; validate with check().
+struct Camera {
+  glm::dmat4 world_to_camera{1.0};  // column-major
+  glm::dmat4 projection{1.0};       // OpenGL's, perspective or orthographic
+  int width = 0, height = 0;        // pixels
+
+  // Throws Error when the size is not positive or a matrix cannot be used.
+  void check(int max_size) const;
+  bool perspective() const { return projection[3][3] == 0.0; }
+};
+
+// The camera's view of one sample. `jitter` moves the image by a part of a pixel.
+shared::View camera_view(const Camera& camera, glm::dvec2 jitter);
+
+// A box-shaped or pyramid-shaped view for a shadow map of `resolution` texels a side. x, y and axis
+// are unit and square to each other; half_x and half_y are half extents (orthographic: metres,
+// perspective: tangents), shifted by `shift` (same units).
+struct LightView {
+  glm::dvec3 origin;
+  glm::dvec3 x, y, axis;
+  double half_x, half_y;
+  double near_depth, far_depth;  // along the axis
+  bool perspective;
+  glm::dvec2 shift{0, 0};
+};
+shared::View light_view(const LightView& light, int resolution);
+
+// The clip transform of `light` for positions that are relative to `other_origin`.
+glm::mat4 clip_from(const LightView& light, const glm::dvec3& other_origin);
+
+}  // namespace panoptes::gpu_scene

@@ -1,0 +1,27 @@
+#include "plan/plan.h"
+
+#include "film/decide.h"
+#include "rasterize/decide.h"
+#include "realtime/decide.h"
+
+namespace panoptes::plan {
+
+Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
+  Effects all;
+  const auto append = [&](Effects part) {
+    all.insert(all.end(), std::make_move_iterator(part.begin()),
+               std::make_move_iterator(part.end()));
+  };
+  append(rasterize::decide(facts, {settings.samples, settings.soft_shadows}));
+  append(realtime::decide(facts));
+  append(film::decide(settings.passes));
+  if (settings.force_all_effects)
+    for (Effect& effect : all)
+      if (!effect.runs) {
+        effect.runs = true;
+        effect.reason = "forced on; by itself it would be skipped: " + effect.reason;
+      }
+  return all;
+}
+
+}  // namespace panoptes::plan

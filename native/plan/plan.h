@@ -1,0 +1,19 @@
+// Composes what the techniques decided into the plan of a frame: which effects run, and why.
+#pragma once
+
+#include "film/passes.h"
+#include "plan/effect.h"
+#include "scene/scene.h"
+
+namespace panoptes::plan {
+
+struct PlanSettings {
+  int samples = 1;
+  bool soft_shadows = true;
+  bool force_all_effects = false;  // runs everything; the picture must not change
+  film::PassSet passes;
+};
+
+Effects make_plan(const scene::Facts& facts, const PlanSettings& settings);
+
+}  // namespace panoptes::plan

@@ -1,0 +1,141 @@
+#include "python/convert.h"
+
+#include <set>
+
+namespace panoptes::python {
+
+namespace {
+
+template <class T>
+T get(const py::dict& dict, const char* key, const T& otherwise) {
+  if (!dict.contains(key) || dict[key].is_none()) return otherwise;
+  try {
+    return dict[key].cast<T>();
+  } catch (const py::cast_error&) {
+    fail("'{}' has a value of the wrong type: please report it", key);
+  }
+}
+
+template <class T>
+T need(const py::dict& dict, const char* key) {
+  if (!dict.contains(key)) fail("'{}' is missing: please report it", key);
+  return get<T>(dict, key, T{});
+}
+
+glm::dmat4 wide_matrix(const py::dict& dict, const char* key) {
+  const auto array = need<Array<double>>(dict, key);
+  if (array.size() != 16) fail("'{}' must be a 4x4 matrix: please report it", key);
+  glm::dmat4 m;
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) m[c][r] = array.data()[r * 4 + c];
+  return m;
+}
+
+}  // namespace
+
+scene::TextureUse texture_use(const py::tuple& tuple) {
+  if (tuple.size() != 3) fail("a texture must be (image, interpolation, extension)");
+  scene::TextureUse use;
+  use.image = tuple[0].cast<scene::Id>();
+  use.closest = tuple[1].cast<std::string>() == "CLOSEST";
+  const std::string extension = tuple[2].cast<std::string>();
+  using Extension = scene::TextureUse::Extension;
+  use.extension = extension == "EXTEND" ? Extension::kExtend
+                  : extension == "CLIP" ? Extension::kClip
+                                        : Extension::kRepeat;
+  return use;
+}
+
+std::vector<scene::TextureUse> texture_uses(const py::list& list) {
+  std::vector<scene::TextureUse> uses;
+  for (const auto& item : list) uses.push_back(texture_use(py::tuple(py::reinterpret_borrow<py::object>(item))));
+  return uses;
+}
+
+glm::mat4 matrix(const Array<float>& row_major, const char* name) {
+  if (row_major.size() != 16) fail("'{}' must be a 4x4 matrix: please report it", name);
+  glm::mat4 m;
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) m[c][r] = row_major.data()[r * 4 + c];
+  return m;
+}
+
+std::vector<glm::vec4> params(const Array<float>& array) {
+  const auto span = rows<glm::vec4>(array, "params", 4);
+  return {span.begin(), span.end()};
+}
+
+scene::AlphaMode alpha_mode(const std::string& name) {
+  if (name == "PREMUL") return scene::AlphaMode::kPremultiplied;
+  if (name == "CHANNEL_PACKED") return scene::AlphaMode::kChannelPacked;
+  if (name == "NONE") return scene::AlphaMode::kNone;
+  return scene::AlphaMode::kStraight;
+}
+
+scene::Light light(const py::dict& dict) {
+  scene::Light light;
+  const auto type = need<std::string>(dict, "type");
+  light.type = type == "SUN"    ? scene::LightType::kSun
+               : type == "SPOT" ? scene::LightType::kSpot
+               : type == "AREA" ? scene::LightType::kArea
+                                : scene::LightType::kPoint;
+  light.object_to_world = matrix(need<Array<float>>(dict, "matrix"), "matrix");
+  const auto color = need<std::array<float, 3>>(dict, "color");
+  light.color = {color[0], color[1], color[2]};
+  light.energy = need<float>(dict, "energy");
+  light.radius = get(dict, "radius", 0.0f);
+  light.angle = get(dict, "angle", 0.0f);
+  light.spot_size = get(dict, "spot_size", light.spot_size);
+  light.spot_blend = get(dict, "spot_blend", 0.0f);
+  const auto shape = get<std::string>(dict, "shape", "SQUARE");
+  light.shape = shape == "RECTANGLE" ? scene::AreaShape::kRectangle
+                : shape == "DISK"    ? scene::AreaShape::kDisk
+                : shape == "ELLIPSE" ? scene::AreaShape::kEllipse
+                                     : scene::AreaShape::kSquare;
+  light.size_x = get(dict, "size", 1.0f);
+  light.size_y = get(dict, "size_y", light.size_x);
+  light.spread = get(dict, "spread", light.spread);
+  light.cast_shadow = get(dict, "cast_shadow", true);
+  return light;
+}
+
+engine::RenderRequest request(const py::dict& dict) {
+  engine::RenderRequest r;
+  r.camera.width = need<int>(dict, "width");
+  r.camera.height = need<int>(dict, "height");
+  r.camera.world_to_camera = wide_matrix(dict, "view");
+  r.camera.projection = wide_matrix(dict, "projection");
+  const auto samples = need<std::array<int64_t, 2>>(dict, "samples");
+  if (samples[0] < 0 || samples[1] <= samples[0] || samples[1] > 0x7fffffff)
+    fail("samples {} to {} are an empty range: ask for at least one sample", samples[0],
+         samples[1]);
+  r.first_sample = uint32_t(samples[0]);
+  r.last_sample = uint32_t(samples[1]);
+  r.seed = uint32_t(get<int64_t>(dict, "seed", 0));
+  for (const auto& name : get<std::vector<std::string>>(dict, "passes", {"Combined"})) {
+    const film::Pass pass = film::find_pass(name);
+    if (pass == film::Pass::kCount)
+      fail("there is no pass '{}': see the README for those that there are", name);
+    r.passes.set(size_t(pass));
+  }
+  const auto method = get<std::string>(dict, "method", "realtime");
+  if (method != "realtime")
+    fail("method '{}' is not part of this version: choose 'realtime'", method);
+  r.filter_width = get(dict, "filter_width", r.filter_width);
+  r.exposure = get(dict, "exposure", r.exposure);
+  r.force_all_effects = get(dict, "force_all_effects", false);
+  r.live = get(dict, "live", false);
+  const py::dict settings = get(dict, "settings", py::dict());
+  static const std::set<std::string> known{"shadow_resolution", "soft_shadows", "time_budget",
+                                           "noise_threshold"};
+  for (const auto& item : settings)
+    if (!known.count(item.first.cast<std::string>()))
+      fail("there is no setting '{}': please report it", item.first.cast<std::string>());
+  r.shadow_resolution = get(settings, "shadow_resolution", r.shadow_resolution);
+  r.soft_shadows = get(settings, "soft_shadows", r.soft_shadows);
+  r.time_budget = get(settings, "time_budget", 0.0);
+  r.noise_threshold = get(settings, "noise_threshold", 0.0);
+  return r;
+}
+
+}  // namespace panoptes::python

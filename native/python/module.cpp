@@ -1,0 +1,237 @@
+// The module that the add-on loads: plain arrays in, plain arrays out. Inputs are copied while the
+// GIL is held; it is released around everything that waits or works. Every error is a
+// panoptes_native.Error with cause and remedy.
+#include "engine/engine.h"
+#include "engine/snapshot.h"
+#include "gl/counters.h"
+#include "image_io/image_io.h"
+#include "python/convert.h"
+
+
+namespace panoptes::python {
+
+namespace {
+
+using engine::Engine;
+using engine::Job;
+using scene::Id;
+using scene::Scene;
+
+// Runs `change` on the scene without the GIL.
+template <class F>
+void edit(Engine& engine, F&& change) {
+  py::gil_scoped_release release;
+  engine.edit(std::forward<F>(change));
+}
+
+void set_mesh(Engine& engine, Id id, const std::string& name, const Array<float>& positions,
+              const Array<int>& triangle_vertices, const Array<int>& triangle_loops,
+              const Array<int>& triangle_slots, const Array<float>& loop_normals,
+              const py::dict& attributes, const std::string& default_uv,
+              const std::string& default_color) {
+  scene::MeshInput input;
+  input.name = name;
+  input.positions = rows<glm::vec3>(positions, "positions", 3);
+  input.triangle_vertices = rows<glm::ivec3>(triangle_vertices, "triangle_vertices", 3);
+  input.triangle_loops = rows<glm::ivec3>(triangle_loops, "triangle_loops", 3);
+  input.triangle_slots = rows<int>(triangle_slots, "triangle_slots", 1);
+  input.loop_normals = rows<glm::vec3>(loop_normals, "loop_normals", 3);
+  input.default_uv = default_uv;
+  input.default_color = default_color;
+  std::vector<Array<float>> keep;  // the arrays that the spans below point into
+  for (const auto& [key, value] : attributes) {
+    keep.push_back(value.cast<Array<float>>());
+    const Array<float>& array = keep.back();
+    const int channels = array.ndim() == 2 ? int(array.shape(1)) : 0;
+    if (channels != 2 && channels != 4)
+      fail("attribute '{}' of mesh '{}' must have two or four values a loop: please report it",
+           key.cast<std::string>(), name);
+    input.attributes.push_back(
+        {key.cast<std::string>(), channels, {array.data(), size_t(array.size())}});
+  }
+  py::gil_scoped_release release;
+  scene::Mesh mesh = scene::make_mesh(input);
+  engine.edit([&](Scene& scene) { scene.set_mesh(id, std::move(mesh)); });
+}
+
+std::vector<glm::mat4> matrices_of(const Array<float>& array) {
+  if (array.size() % 16 != 0) fail("matrices must have shape (N, 4, 4): please report it");
+  std::vector<glm::mat4> result(size_t(array.size()) / 16);
+  for (size_t i = 0; i < result.size(); ++i)
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c) result[i][c][r] = array.data()[i * 16 + size_t(r * 4 + c)];
+  return result;
+}
+
+void set_instances(Engine& engine, const Array<int64_t>& meshes, const Array<float>& matrices,
+                   const Array<int>& material_offsets, const Array<int64_t>& material_table) {
+  const std::vector<glm::mat4> places = matrices_of(matrices);
+  if (places.size() != size_t(meshes.size()) || places.size() != size_t(material_offsets.size()))
+    fail("instances were handed over with arrays of different lengths: please report it");
+  std::vector<scene::Instance> instances(places.size());
+  for (size_t i = 0; i < places.size(); ++i)
+    instances[i] = {meshes.data()[i], places[i], material_offsets.data()[i]};
+  std::vector<Id> table(material_table.data(), material_table.data() + material_table.size());
+  edit(engine, [&](Scene& scene) { scene.set_instances(std::move(instances), std::move(table)); });
+}
+
+void set_instance_matrices(Engine& engine, const Array<int>& indices,
+                           const Array<float>& matrices) {
+  const std::vector<glm::mat4> places = matrices_of(matrices);
+  const std::vector<int> list(indices.data(), indices.data() + indices.size());
+  edit(engine, [&](Scene& scene) { scene.set_instance_matrices(list, places); });
+}
+
+void set_material(Engine& engine, Id id, const std::string& name, const std::string& code,
+                  const Array<float>& values, const py::list& textures, const py::dict& facts) {
+  scene::Material material{name, code, params(values), texture_uses(textures), {}, {}};
+  const auto flag = [&](const char* key, bool otherwise) {
+    return facts.contains(key) ? facts[key].cast<bool>() : otherwise;
+  };
+  material.facts = {flag("alpha", false), flag("emission", false), flag("normal_map", false),
+                    flag("glossy", true), flag("transmission", false)};
+  if (facts.contains("attributes"))
+    material.attributes = facts["attributes"].cast<std::vector<std::string>>();
+  edit(engine, [&](Scene& scene) { scene.set_material(id, std::move(material)); });
+}
+
+void set_world(Engine& engine, const std::string& code, const Array<float>& values,
+               const py::list& textures, const std::optional<std::array<float, 3>>& constant) {
+  scene::World world{code, params(values), texture_uses(textures), std::nullopt};
+  if (constant) world.constant = glm::vec3((*constant)[0], (*constant)[1], (*constant)[2]);
+  edit(engine, [&](Scene& scene) { scene.set_world(std::move(world)); });
+}
+
+void set_image_pixels(Engine& engine, Id id, const std::string& name, const Array<float>& pixels,
+                      bool srgb, const std::string& alpha) {
+  if (pixels.ndim() != 3 || pixels.shape(2) != 4)
+    fail("image '{}' must have shape (H, W, 4): please report it", name);
+  scene::Image image = scene::make_image(name, int(pixels.shape(1)), int(pixels.shape(0)),
+                                         std::span(pixels.data(), size_t(pixels.size())), srgb,
+                                         alpha_mode(alpha));
+  edit(engine, [&](Scene& scene) { scene.set_image(id, std::move(image)); });
+}
+
+py::array read_pass(const Job& job, const std::string& name) {
+  const film::Pass pass = film::find_pass(name);
+  std::vector<float> pixels;
+  {
+    py::gil_scoped_release release;
+    pixels = job.read(pass);
+  }
+  const auto* owned = new std::vector<float>(std::move(pixels));
+  const py::capsule owner(owned, [](void* p) { delete static_cast<std::vector<float>*>(p); });
+  const py::ssize_t height = job.request().camera.height, width = job.request().camera.width;
+  return py::array_t<float>({height, width, py::ssize_t(film::info(pass).channels)}, owned->data(),
+                            owner);
+}
+
+py::dict counters() {
+  const gl::Counters& c = gl::counters();
+  py::dict d;
+  d["uploads"] = c.uploads.load();
+  d["uploaded_bytes"] = c.uploaded_bytes.load();
+  d["programs"] = c.programs.load();
+  d["buffers"] = c.buffers.load();
+  d["textures"] = c.textures.load();
+  d["memory_bytes"] = c.memory_bytes.load();
+  return d;
+}
+
+void bind_job(py::module_& m) {
+  const auto no_gil = py::call_guard<py::gil_scoped_release>();
+  py::class_<Job, std::shared_ptr<Job>>(m, "Job", "One frame under way, or ended.")
+      .def("progress", &Job::progress, "Share of the samples that are done, 0 to 1.")
+      .def("status", &Job::status, "What runs now, for a status line.")
+      .def("wait", &Job::wait, py::arg("seconds"), no_gil,
+           "Waits at most so long; True when the job has ended, however it ended.")
+      .def("cancel", &Job::cancel, "Asks the job to stop; it does so within one pass.")
+      .def("cancelled", &Job::cancelled)
+      .def("samples_ready", &Job::samples_ready, "Samples in what read() gives.")
+      .def("finish", &Job::check, "Raises Error when the render failed.")
+      .def("read", &read_pass, py::arg("name"),
+           "float32 array (height, width, channels) of a pass, row 0 at the bottom.")
+      .def("stats", [](const Job& job) {
+        const std::string json = job.stats().to_json();
+        return py::module_::import("json").attr("loads")(json);
+      });
+}
+
+void bind_engine(py::module_& m) {
+  const auto no_gil = py::call_guard<py::gil_scoped_release>();
+  py::class_<Engine>(m, "Engine", "A render thread with its own OpenGL context, and its scene.")
+      .def(py::init([](bool prefer_software) {
+             py::gil_scoped_release release;
+             return std::make_unique<Engine>(gl::ContextOptions{prefer_software});
+           }),
+           py::arg("prefer_software") = false)
+      .def_property_readonly("device", [](const Engine& e) { return e.device().renderer; })
+      .def("close", &Engine::close, no_gil, "Stops the render thread. Idempotent.")
+      .def("counters", [](const Engine&) { return counters(); })
+      .def("set_mesh", &set_mesh, py::arg("id"), py::arg("name"), py::arg("positions"),
+           py::arg("triangle_vertices"), py::arg("triangle_loops"), py::arg("triangle_slots"),
+           py::arg("loop_normals"), py::arg("attributes"), py::arg("default_uv") = "",
+           py::arg("default_color") = "")
+      .def("remove_mesh", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_mesh(id); }); })
+      .def("set_instances", &set_instances, py::arg("mesh_ids"), py::arg("matrices"),
+           py::arg("material_offsets"), py::arg("material_table"))
+      .def("set_instance_matrices", &set_instance_matrices, py::arg("indices"), py::arg("matrices"))
+      .def("set_material", &set_material, py::arg("id"), py::arg("name"), py::arg("code"),
+           py::arg("params"), py::arg("textures"), py::arg("facts"))
+      .def("set_material_params",
+           [](Engine& e, Id id, const Array<float>& values) {
+             std::vector<glm::vec4> list = params(values);
+             edit(e, [&](Scene& s) { s.set_material_params(id, std::move(list)); });
+           })
+      .def("remove_material",
+           [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_material(id); }); })
+      .def("set_image_file",
+           [](Engine& e, Id id, const std::string& name, const std::string& path, bool srgb,
+              const std::string& alpha) {
+             py::gil_scoped_release release;
+             scene::Image image = image_io::load_file(name, path, srgb, alpha_mode(alpha));
+             e.edit([&](Scene& s) { s.set_image(id, std::move(image)); });
+           })
+      .def("set_image_encoded",
+           [](Engine& e, Id id, const std::string& name, const py::bytes& data, bool srgb,
+              const std::string& alpha) {
+             const std::string_view view(data);
+             py::gil_scoped_release release;  // `data` is held by the caller
+             scene::Image image =
+                 image_io::load_memory(name, {view.data(), view.size()}, srgb, alpha_mode(alpha));
+             e.edit([&](Scene& s) { s.set_image(id, std::move(image)); });
+           })
+      .def("set_image_pixels", &set_image_pixels)
+      .def("remove_image", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_image(id); }); })
+      .def("set_lights",
+           [](Engine& e, const py::list& list) {
+             std::vector<scene::Light> lights;
+             for (const auto& item : list)
+               lights.push_back(light(py::reinterpret_borrow<py::dict>(item)));
+             edit(e, [&](Scene& s) { s.set_lights(std::move(lights)); });
+           })
+      .def("set_world", &set_world, py::arg("code"), py::arg("params"), py::arg("textures"),
+           py::arg("constant") = py::none())
+      .def("render",
+           [](Engine& e, const py::dict& dict) {
+             engine::RenderRequest r = request(dict);
+             py::gil_scoped_release release;
+             return e.render(std::move(r));
+           })
+      .def("write_snapshot", [](Engine& e, const std::string& path, const py::dict& dict) {
+        const engine::RenderRequest r = request(dict);
+        edit(e, [&](Scene& s) { engine::write_snapshot(path, s, r); });
+      });
+}
+
+}  // namespace
+
+PYBIND11_MODULE(panoptes_native, m) {
+  m.doc() = "Native part of the Panoptes render engine.";
+  m.attr("__version__") = PANOPTES_VERSION;
+  py::register_exception<Error>(m, "Error", PyExc_RuntimeError);
+  bind_job(m);
+  bind_engine(m);
+}
+
+}  // namespace panoptes::python

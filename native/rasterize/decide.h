@@ -1,0 +1,16 @@
+#pragma once
+
+#include "plan/effect.h"
+#include "scene/scene.h"
+
+namespace panoptes::rasterize {
+
+struct DecideSettings {
+  int samples = 1;
+  bool soft_shadows = true;
+};
+
+// What the camera's G-buffer and the shadow maps do for a scene with these facts.
+plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings);
+
+}  // namespace panoptes::rasterize

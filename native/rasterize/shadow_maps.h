@@ -1,0 +1,74 @@
+// Shadow maps of all lamps, in layers of one depth array: one layer for a sun or a narrow spot, six
+// faces of a world-aligned cube for points, wide spots and areas.
+//
+// Lamps whose layers do not fit together are worked off in batches, so that memory is bounded
+// whatever the number of lamps. Maps that hold for the next sample or frame are kept.
+#pragma once
+
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/lights_shared.h"
+#include "gpu_scene/view.h"
+#include "rasterize/g_buffer.h"
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+namespace panoptes::rasterize {
+
+struct ShadowSettings {
+  int resolution = 2048;           // texels a side; 14 mm on a hall of 28 m
+  int64_t max_bytes = 512 << 20;   // of the depth array
+};
+
+// A lamp in one sample: what shaders read, and the faces of its map.
+struct PlacedLight {
+  shared::Light light;
+  scene::LightType type;
+  std::vector<gpu_scene::LightView> faces;  // none: casts no shadow
+};
+
+struct LightBatch {
+  uint32_t first_light = 0, light_count = 0;
+  uint32_t first_face = 0, face_count = 0;
+};
+
+struct LightSet {
+  std::vector<PlacedLight> lights;
+  std::vector<shared::ShadowFace> faces;
+  std::vector<LightBatch> batches;
+};
+
+// Which of a lamp's points this sample uses.
+struct LightSamplePoint {
+  float u = 0.5f, v = 0.5f;
+  glm::vec2 texel_shift{0};  // of the map's grid, -.5 .. .5, so that samples smooth its edges
+};
+
+// Places `lights` for one sample: `points` is empty for the lamps' centres or has an entry a lamp.
+// No GL. `layers` is how many faces fit into a batch, at least 6.
+LightSet place_lights(const std::vector<scene::Light>& lights, bool shadows,
+                      const std::vector<LightSamplePoint>& points, const scene::Bounds& bounds,
+                      const glm::dvec3& camera_origin, int resolution, int layers);
+
+class ShadowMaps {
+ public:
+  // Layers that `settings` allow for; at least the six that one lamp can need.
+  static int layer_limit(const ShadowSettings& settings, const gl::DeviceInfo& device);
+
+  // Renders the maps of one batch unless `keep` says that they still hold.
+  void render(const LightSet& set, const LightBatch& batch, const ShadowSettings& settings,
+              const shared::View& camera, const gpu_scene::GpuScene& scene,
+              gl::ProgramCache& programs, gl::PassTimer& timer, ViewBlock& view_block, bool keep);
+  void bind(int unit) const;
+  void release();
+
+ private:
+  gl::Texture maps_;
+  gl::Framebuffer framebuffer_;
+  gl::Sampler sampler_;
+};
+
+}  // namespace panoptes::rasterize

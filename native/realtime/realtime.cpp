@@ -1,0 +1,236 @@
+#include "realtime/realtime.h"
+
+#include "film/sampling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace panoptes::realtime {
+
+namespace {
+
+void stop_if(const std::atomic<bool>& cancelled) {
+  if (cancelled) throw Cancelled{};
+}
+
+void clear(const gl::Texture& texture) {
+  const float zero[4] = {0, 0, 0, 0};
+  glClearTexImage(texture.id(), 0, GL_RGBA, GL_FLOAT, zero);
+}
+
+void want(gl::Texture& texture, bool wanted, int width, int height) {
+  const bool fits = texture && texture.options().width == width &&
+                    texture.options().height == height;
+  if (wanted == fits) return;
+  texture = gl::Texture();
+  if (wanted) texture = gl::Texture({GL_TEXTURE_2D, GL_RGBA32F, width, height, 1, 1});
+}
+
+// Rewrites `buffer`, larger if it must be.
+void store(gl::Buffer& buffer, const void* data, size_t bytes) {
+  if (buffer.bytes() < int64_t(bytes) || !buffer) buffer = gl::Buffer(int64_t(bytes));
+  buffer.write(0, int64_t(bytes), data);
+}
+
+}  // namespace
+
+gl::ProgramSource direct_light_program(const LightOptions& options) {
+  gl::ProgramSource source;
+  source.name = "direct light";
+  source.stages = {{GL_COMPUTE_SHADER, "realtime/direct_light.comp"}};
+  source.defines = {fmt::format("SHADOWS {}", int(options.shadows)),
+                    fmt::format("GLOSSY {}", int(options.glossy))};
+  return source;
+}
+
+gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film) {
+  gl::ProgramSource source;
+  source.name = "compose";
+  source.stages = {{GL_COMPUTE_SHADER, "realtime/compose.comp"}};
+  source.defines = {fmt::format("LAMPS {}", int(options.lamps)),
+                    fmt::format("GLOSSY {}", int(options.glossy)),
+                    fmt::format("EMISSION {}", int(options.emission)),
+                    fmt::format("BACKGROUND {}", int(options.background)),
+                    fmt::format("WORLD_LIGHT {}", int(options.world_light))};
+  film.add_defines(source);
+  return source;
+}
+
+gl::ProgramSource background_program(const gpu_scene::GpuShading& world) {
+  gl::ProgramSource source;
+  source.name = "world background";
+  source.stages = {{GL_COMPUTE_SHADER, "realtime/background.comp"}};
+  gpu_scene::GpuScene::add_world(world, source);
+  return source;
+}
+
+gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world) {
+  gl::ProgramSource source = background_program(world);
+  source.name = "world light";
+  source.stages = {{GL_COMPUTE_SHADER, "realtime/world_project.comp"}};
+  return source;
+}
+
+void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
+                     const Settings& settings, const scene::Scene& scene,
+                     const gpu_scene::GpuScene& gpu) {
+  camera_ = camera;
+  settings_ = settings;
+  plan_ = plan;
+  glossy_ = runs(plan, "glossy");
+  emission_ = runs(plan, "emission");
+  alpha_ = runs(plan, "alpha");
+  lamps_ = runs(plan, "direct_light");
+  soft_ = runs(plan, "soft_shadows");
+  shadows_ = lamps_ && (runs(plan, "sun_shadows") || runs(plan, "point_shadows") ||
+                        runs(plan, "spot_shadows") || runs(plan, "area_shadows"));
+  background_ = runs(plan, "world_background") && gpu.world();
+  world_light_ = runs(plan, "world_light");
+  lights_ = scene.lights();
+  bounds_ = scene.bounds();
+
+  const int width = camera.width, height = camera.height;
+  g_buffer_.resize(width, height, {.glossy = glossy_, .emission = emission_});
+  want(diffuse_light_, lamps_, width, height);
+  want(glossy_light_, lamps_ && glossy_, width, height);
+  want(environment_, background_, width, height);
+  if (!shadows_) shadow_maps_.release();
+  if (world_light_ && world_revision_ != gpu.world_revision()) {
+    gl::PassScope scope(timer_, "world_light");
+    project_world(scene.world(), gpu);
+    world_revision_ = gpu.world_revision();
+  }
+}
+
+void Realtime::project_world(const scene::World& world, const gpu_scene::GpuScene& gpu) {
+  std::array<glm::vec4, 9> coefficients{};
+  if (world.constant || !gpu.world()) {
+    // Only the first harmonic, 1 / sqrt(4 pi), has a mean: its coefficient is radiance * sqrt(4 pi).
+    coefficients[0] = glm::vec4(world.constant.value_or(glm::vec3(0)) * 3.5449077f, 0);
+  } else {
+    // As many directions as the world's images have texels, within what a frame can bear.
+    const unsigned width = unsigned(std::clamp(gpu.world_image_width(), 256, 2048));
+    const unsigned height = width / 2, each = 64, local = 64;
+    const unsigned groups = (width * height + each * local - 1) / (each * local);
+    gl::Buffer sums(int64_t(groups) * 9 * 16);
+    programs_.get(world_project_program(*gpu.world())).use();
+    gpu.bind_shading(*gpu.world());
+    glUniform2ui(1, width, height);
+    glUniform1ui(2, each);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, sums.id());
+    glDispatchCompute(groups, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    std::vector<glm::vec4> partial(size_t(groups) * 9);
+    sums.read(0, int64_t(partial.size()) * 16, partial.data());
+    std::array<glm::dvec4, 9> total{};
+    for (size_t i = 0; i < partial.size(); ++i) total[i % 9] += glm::dvec4(partial[i]);
+    for (size_t k = 0; k < 9; ++k) coefficients[k] = glm::vec4(total[k]);
+  }
+  store(world_block_, coefficients.data(), sizeof coefficients);
+}
+
+void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
+                             const gpu_scene::GpuScene& gpu, film::Film& film,
+                             const std::atomic<bool>& cancelled) {
+  // A single sample looks through the pixel's centre; many follow the pixel filter.
+  const uint32_t count = last - first;
+  const bool centre = count == 1 && first == 0;
+  const glm::vec2 u = film::sample_point(index, settings_.seed, 0);
+  const glm::dvec2 jitter =
+      centre ? glm::dvec2(0) : glm::dvec2(film::blackman_harris_offset(u.x, settings_.filter_width),
+                                          film::blackman_harris_offset(u.y, settings_.filter_width));
+  shared::View view = gpu_scene::camera_view(camera_, jitter);
+  view.size.z = int(index);
+  view.size.w = int(settings_.seed);
+  view.alpha = centre ? glm::vec4(0.5f, 1, 0, 0)
+                      : glm::vec4(film::sample_value(index, settings_.seed, 1), 0, 0, 0);
+  // N samples share the pixel's footprint, so each may look sqrt(N) times finer.
+  view.filtering.x = -0.5f * std::log2(float(last));
+  view.filtering.w = index == first ? 1.0f : 0.0f;
+  view_block_.set(view);
+
+  g_buffer_.render(gpu, programs_, timer_);
+  stop_if(cancelled);
+  if (lamps_) add_lamps(index, view, gpu, cancelled);
+
+  if (background_) {
+    gl::PassScope scope(timer_, "world_background");
+    programs_.get(background_program(*gpu.world())).use();
+    gpu.bind_shading(*gpu.world());
+    g_buffer_.bind_bins();
+    environment_.bind_image(0, GL_WRITE_ONLY);
+    g_buffer_.dispatch_background();
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    stop_if(cancelled);
+  }
+
+  gl::PassScope scope(timer_, "compose");
+  const ComposeOptions options{lamps_, glossy_, emission_, background_, world_light_};
+  programs_.get(compose_program(options, film)).use();
+  g_buffer_.bind_visibility();
+  g_buffer_.bind_surfaces();
+  if (lamps_) diffuse_light_.bind_image(0, GL_READ_ONLY);
+  if (lamps_ && glossy_) glossy_light_.bind_image(1, GL_READ_ONLY);
+  if (emission_) g_buffer_.emission().bind_image(2, GL_READ_ONLY);
+  if (background_) environment_.bind_image(3, GL_READ_ONLY);
+  if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
+  film.bind();
+  glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void Realtime::add_lamps(uint32_t index, const shared::View& view,
+                         const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled) {
+  std::vector<rasterize::LightSamplePoint> points;
+  if (soft_)
+    for (size_t i = 0; i < lights_.size(); ++i) {
+      const glm::vec2 u = film::sample_point(index, settings_.seed, uint32_t(2 + 2 * i));
+      const glm::vec2 s = film::sample_point(index, settings_.seed, uint32_t(3 + 2 * i));
+      points.push_back({u.x, u.y, s - 0.5f});
+    }
+  const int resolution = settings_.shadows.resolution;
+  const rasterize::LightSet set = rasterize::place_lights(
+      lights_, shadows_, points, bounds_, glm::inverse(camera_.world_to_camera)[3], resolution,
+      rasterize::ShadowMaps::layer_limit(settings_.shadows, device_));
+
+  std::vector<shared::Light> lights;
+  for (const rasterize::PlacedLight& placed : set.lights) lights.push_back(placed.light);
+  store(lights_buffer_, lights.data(), lights.size() * sizeof(shared::Light));
+  store(faces_buffer_, set.faces.data(), set.faces.size() * sizeof(shared::ShadowFace));
+  clear(diffuse_light_);
+  if (glossy_) clear(glossy_light_);
+
+  // Maps hold for the next sample and frame unless a lamp's point or an alpha threshold moves on,
+  // or another batch has overwritten them.
+  const bool lasting = !soft_ && !alpha_ && set.batches.size() <= 1;
+  const bool keep = lasting && shadow_revision_ == gpu.revision();
+  shadow_revision_ = lasting ? gpu.revision() : -1;
+  for (const rasterize::LightBatch& batch : set.batches) {
+    if (shadows_) {
+      shadow_maps_.render(set, batch, settings_.shadows, view, gpu, programs_, timer_, view_block_,
+                          keep);
+      stop_if(cancelled);
+      view_block_.set(view);
+    }
+    gl::PassScope scope(timer_, "direct_light");
+    programs_.get(direct_light_program({shadows_, glossy_})).use();
+    g_buffer_.bind_bins();
+    g_buffer_.bind_surfaces();
+    if (shadows_) shadow_maps_.bind(13);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, lights_buffer_.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, faces_buffer_.id());
+    diffuse_light_.bind_image(0, GL_READ_WRITE);
+    if (glossy_) glossy_light_.bind_image(1, GL_READ_WRITE);
+    glUniform1ui(2, batch.first_light);
+    glUniform1ui(3, batch.light_count);
+    glUniform1ui(4, batch.first_face);
+    g_buffer_.dispatch_surfaces();
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    stop_if(cancelled);
+  }
+}
+
+}  // namespace panoptes::realtime

@@ -1,0 +1,83 @@
+// Integrator 1: composes direct light and the world's light into a frame, sample by sample. The
+// radiance cache and contact occlusion join it with their own issues; until then light that has
+// left a first surface is missing, and glass and mirrors see the blurred world.
+#pragma once
+
+#include "film/film.h"
+#include "gl/context.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/view.h"
+#include "plan/effect.h"
+#include "rasterize/g_buffer.h"
+#include "rasterize/shadow_maps.h"
+#include "scene/scene.h"
+
+#include <atomic>
+#include <functional>
+
+namespace panoptes::realtime {
+
+struct Settings {
+  rasterize::ShadowSettings shadows;
+  uint32_t seed = 0;
+  float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
+};
+
+// Programs of this integrator, for the frame and for the shader validation.
+struct LightOptions {
+  bool shadows = false, glossy = false;
+};
+gl::ProgramSource direct_light_program(const LightOptions& options);
+struct ComposeOptions {
+  bool lamps = false, glossy = false, emission = false, background = false, world_light = false;
+};
+gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
+gl::ProgramSource background_program(const gpu_scene::GpuShading& world);
+gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world);
+
+// Thrown between passes when the frame is no longer wanted.
+struct Cancelled {};
+
+class Realtime {
+ public:
+  Realtime(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
+      : device_(device), programs_(programs), timer_(timer) {}
+
+  // Prepares for a frame: allocates what the plan runs and releases what it does not.
+  void begin(const gpu_scene::Camera& camera, const plan::Effects& plan, const Settings& settings,
+             const scene::Scene& scene, const gpu_scene::GpuScene& gpu);
+
+  // Adds sample `index` (of first .. last - 1) to the film. Throws Cancelled when `cancelled` says so.
+  void render_sample(uint32_t index, uint32_t first, uint32_t last, const gpu_scene::GpuScene& gpu,
+                     film::Film& film, const std::atomic<bool>& cancelled);
+
+ private:
+  void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
+  void add_lamps(uint32_t index, const shared::View& view,
+                 const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
+
+  gl::DeviceInfo device_;
+  gl::ProgramCache& programs_;
+  gl::PassTimer& timer_;
+
+  gpu_scene::Camera camera_;
+  Settings settings_;
+  plan::Effects plan_;
+  bool glossy_ = false, emission_ = false, lamps_ = false, shadows_ = false, soft_ = false;
+  bool alpha_ = false, background_ = false, world_light_ = false;
+  std::vector<scene::Light> lights_;
+  scene::Bounds bounds_;
+
+  rasterize::ViewBlock view_block_;
+  rasterize::GBuffer g_buffer_;
+  rasterize::ShadowMaps shadow_maps_;
+  int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
+  int shadow_resolution_ = 0;
+  gl::Texture diffuse_light_, glossy_light_, environment_;
+  gl::Buffer lights_buffer_, faces_buffer_, world_block_;
+  int64_t world_revision_ = -1;
+};
+
+}  // namespace panoptes::realtime

@@ -1,0 +1,307 @@
+#include "scene/scene.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace panoptes::scene {
+
+namespace {
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool finite(const glm::mat4& m) {
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      if (!std::isfinite(m[c][r])) return false;
+  return true;
+}
+
+void check_id(Id id, const char* what) {
+  if (id <= 0) fail("a {} was handed over with id {}: ids must be positive", what, id);
+}
+
+void check_indices(const MeshInput& in) {
+  const int vertices = int(in.positions.size()), loops = int(in.loop_normals.size());
+  for (size_t t = 0; t < in.triangle_vertices.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int v = in.triangle_vertices[t][k], l = in.triangle_loops[t][k];
+      if (v < 0 || v >= vertices || l < 0 || l >= loops)
+        fail("mesh '{}' has a triangle with an index out of range: run Mesh > Clean Up on it, or "
+             "validate the mesh",
+             in.name);
+    }
+}
+
+}  // namespace
+
+uint32_t pack_unit(glm::vec3 n) {
+  const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  if (!(sum > 0) || !std::isfinite(sum)) n = {0, 0, 1};
+  else n /= sum;
+  glm::vec2 o{n.x, n.y};
+  if (n.z < 0)
+    o = {(1 - std::abs(n.y)) * (n.x >= 0 ? 1.0f : -1.0f),
+         (1 - std::abs(n.x)) * (n.y >= 0 ? 1.0f : -1.0f)};
+  const auto snorm = [](float v) {
+    return uint32_t(uint16_t(int16_t(std::lround(std::clamp(v, -1.0f, 1.0f) * 32767.0f))));
+  };
+  return snorm(o.x) | snorm(o.y) << 16;
+}
+
+Mesh make_mesh(const MeshInput& in) {
+  const size_t count = in.triangle_vertices.size();
+  if (in.triangle_loops.size() != count || in.triangle_slots.size() != count)
+    fail("mesh '{}' was handed over with arrays of different lengths: please report it", in.name);
+  check_indices(in);
+
+  Mesh mesh;
+  mesh.name = in.name;
+  mesh.positions.assign(in.positions.begin(), in.positions.end());
+  mesh.default_uv = in.default_uv;
+  mesh.default_color = in.default_color;
+
+  // Broken vertices take their triangles with them; the positions left must be finite for bounds.
+  std::vector<uint8_t> broken(mesh.positions.size(), 0);
+  bool any_broken = false;
+  for (size_t i = 0; i < mesh.positions.size(); ++i)
+    if (!finite(mesh.positions[i])) {
+      broken[i] = 1;
+      any_broken = true;
+      mesh.positions[i] = glm::vec3(0);
+    }
+
+  // A counting sort by slot keeps the order within a slot.
+  std::map<int, uint32_t> slots;
+  std::vector<uint8_t> keep(count, 1);
+  size_t dropped = 0;
+  for (size_t t = 0; t < count; ++t) {
+    const glm::ivec3 v = in.triangle_vertices[t];
+    if (any_broken && (broken[v.x] || broken[v.y] || broken[v.z])) {
+      keep[t] = 0;
+      ++dropped;
+      continue;
+    }
+    ++slots[std::max(in.triangle_slots[t], 0)];
+  }
+  uint32_t first = 0;
+  std::map<int, uint32_t> cursor;
+  for (const auto& [slot, n] : slots) {
+    mesh.ranges.push_back({slot, first, n});
+    cursor[slot] = first;
+    first += n;
+  }
+  std::vector<uint32_t> order(first);
+  if (slots.size() == 1 && dropped == 0) {
+    for (uint32_t t = 0; t < first; ++t) order[t] = t;
+  } else {
+    for (size_t t = 0; t < count; ++t)
+      if (keep[t]) order[cursor[std::max(in.triangle_slots[t], 0)]++] = uint32_t(t);
+  }
+  if (dropped)
+    mesh.warning = fmt::format(
+        "Mesh '{}' has vertices that are not finite; {} of its triangles are left out: check its "
+        "modifiers and shape keys.",
+        in.name, dropped);
+
+  std::vector<uint32_t> packed(in.loop_normals.size());
+  for (size_t l = 0; l < packed.size(); ++l) packed[l] = pack_unit(in.loop_normals[l]);
+  mesh.triangles.resize(first);
+  mesh.corner_normals.resize(first);
+  for (uint32_t i = 0; i < first; ++i) {
+    const glm::ivec3 v = in.triangle_vertices[order[i]], l = in.triangle_loops[order[i]];
+    mesh.triangles[i] = glm::uvec3(v);
+    mesh.corner_normals[i] = {packed[l.x], packed[l.y], packed[l.z]};
+    for (int k = 0; k < 3; ++k) mesh.bounds.add(mesh.positions[v[k]]);
+  }
+
+  for (const MeshInput::LoopAttribute& a : in.attributes) {
+    if (a.values.size() != in.loop_normals.size() * size_t(a.channels))
+      fail("attribute '{}' of mesh '{}' has the wrong length: please report it", a.name, in.name);
+    Attribute attribute{a.name, a.channels, std::vector<float>(size_t(first) * 3 * a.channels)};
+    float* out = attribute.values.data();
+    for (uint32_t i = 0; i < first; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const float* value = &a.values[size_t(in.triangle_loops[order[i]][k]) * a.channels];
+        for (int c = 0; c < a.channels; ++c) *out++ = std::isfinite(value[c]) ? value[c] : 0.0f;
+      }
+    mesh.attributes.push_back(std::move(attribute));
+  }
+  return mesh;
+}
+
+Bounds placed_bounds(const Bounds& bounds, const glm::mat4& m) {
+  Bounds placed;
+  if (bounds.empty()) return placed;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 p{corner & 1 ? bounds.high.x : bounds.low.x,
+                      corner & 2 ? bounds.high.y : bounds.low.y,
+                      corner & 4 ? bounds.high.z : bounds.low.z};
+    placed.add(glm::vec3(m * glm::vec4(p, 1.0f)));
+  }
+  return placed;
+}
+
+void Scene::set_mesh(Id id, Mesh mesh) {
+  check_id(id, "mesh");
+  const auto found = meshes_.find(id);
+  // New ranges change what is drawn, new places only where.
+  const auto same = [](const MaterialRange& a, const MaterialRange& b) {
+    return a.slot == b.slot && a.first == b.first && a.count == b.count;
+  };
+  if (found == meshes_.end() ||
+      !std::equal(found->second.ranges.begin(), found->second.ranges.end(), mesh.ranges.begin(),
+                  mesh.ranges.end(), same))
+    changes_.instances = true;
+  meshes_.insert_or_assign(id, std::move(mesh));
+  changes_.meshes.insert(id);
+}
+
+void Scene::remove_mesh(Id id) {
+  if (meshes_.erase(id)) {
+    changes_.meshes.insert(id);
+    changes_.instances = true;
+  }
+}
+
+void Scene::set_instances(std::vector<Instance> instances, std::vector<Id> material_table) {
+  size_t dropped = 0;
+  for (Instance& instance : instances)
+    if (!finite(instance.object_to_world)) {
+      instance.mesh = 0;  // keeps its index, draws nothing
+      ++dropped;
+    }
+  instance_warning_ =
+      dropped ? fmt::format("{} objects have a matrix that is not finite and are left out: check "
+                            "their location, rotation, scale and constraints.",
+                            dropped)
+              : "";
+  instances_ = std::move(instances);
+  material_table_ = std::move(material_table);
+  changes_.instances = true;
+  changes_.instance_matrices.clear();
+}
+
+void Scene::set_instance_matrices(std::span<const int> indices,
+                                  std::span<const glm::mat4> matrices) {
+  if (indices.size() != matrices.size())
+    fail("{} matrices were handed over for {} instances: please report it", matrices.size(),
+         indices.size());
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] < 0 || size_t(indices[i]) >= instances_.size())
+      fail("instance {} does not exist: please report it", indices[i]);
+    if (!finite(matrices[i])) continue;  // stays where it was
+    instances_[size_t(indices[i])].object_to_world = matrices[i];
+    if (!changes_.instances) changes_.instance_matrices.insert(uint32_t(indices[i]));
+  }
+}
+
+void Scene::set_material(Id id, Material material) {
+  check_id(id, "material");
+  materials_.insert_or_assign(id, std::move(material));
+  changes_.materials.insert(id);
+}
+
+void Scene::set_material_params(Id id, std::vector<glm::vec4> params) {
+  const auto found = materials_.find(id);
+  if (found == materials_.end()) fail("material {} does not exist: please report it", id);
+  if (found->second.params.size() != params.size()) {
+    changes_.materials.insert(id);
+  } else {
+    changes_.material_params.insert(id);
+  }
+  found->second.params = std::move(params);
+}
+
+void Scene::remove_material(Id id) {
+  if (materials_.erase(id)) changes_.materials.insert(id);
+}
+
+void Scene::set_image(Id id, Image image) {
+  check_id(id, "image");
+  images_.insert_or_assign(id, std::move(image));
+  changes_.images.insert(id);
+}
+
+void Scene::remove_image(Id id) {
+  if (images_.erase(id)) changes_.images.insert(id);
+}
+
+void Scene::set_lights(std::vector<Light> lights) {
+  std::erase_if(lights, [](const Light& l) {
+    return !finite(l.object_to_world) || !std::isfinite(l.energy) || !finite(l.color) ||
+           l.energy * l.color == glm::vec3(0);
+  });
+  lights_ = std::move(lights);
+  changes_.lights = true;
+}
+
+void Scene::set_world(World world) {
+  world_ = std::move(world);
+  changes_.world = true;
+}
+
+Id Scene::material_of(const Instance& instance, int slot) const {
+  const int64_t index = int64_t(instance.material_offset) + slot;
+  if (index < 0 || index >= int64_t(material_table_.size())) return 0;
+  const Id id = material_table_[size_t(index)];
+  return materials_.count(id) ? id : 0;
+}
+
+Facts Scene::facts() const {
+  Facts facts;
+  std::set<Id> used;
+  for (const Instance& instance : instances_) {
+    const auto mesh = meshes_.find(instance.mesh);
+    if (mesh == meshes_.end()) continue;
+    ++facts.instances;
+    facts.triangles += int64_t(mesh->second.triangles.size());
+    for (const MaterialRange& range : mesh->second.ranges)
+      used.insert(material_of(instance, range.slot));
+  }
+  for (Id id : used) {
+    const auto found = materials_.find(id);
+    const MaterialFacts m = found == materials_.end() ? MaterialFacts{} : found->second.facts;
+    facts.alpha |= m.alpha;
+    facts.emission |= m.emission;
+    facts.normal_map |= m.normal_map;
+    facts.glossy |= m.glossy;
+    facts.transmission |= m.transmission;
+  }
+  for (const Light& light : lights_) {
+    ++facts.lamps[int(light.type)];
+    facts.shadow_lamps[int(light.type)] += light.cast_shadow;
+    facts.extended_lamps |= light.extended();
+  }
+  facts.world = !world_.black();
+  return facts;
+}
+
+Bounds Scene::bounds() const {
+  Bounds all;
+  for (const Instance& instance : instances_) {
+    const auto mesh = meshes_.find(instance.mesh);
+    if (mesh == meshes_.end()) continue;
+    const Bounds placed = placed_bounds(mesh->second.bounds, instance.object_to_world);
+    if (placed.empty()) continue;
+    all.add(placed.low);
+    all.add(placed.high);
+  }
+  return all;
+}
+
+std::vector<std::string> Scene::warnings() const {
+  std::vector<std::string> result;
+  for (const auto& [id, mesh] : meshes_)
+    if (!mesh.warning.empty()) result.push_back(mesh.warning);
+  if (!instance_warning_.empty()) result.push_back(instance_warning_);
+  return result;
+}
+
+Changes Scene::take_changes() { return std::exchange(changes_, {}); }
+
+}  // namespace panoptes::scene

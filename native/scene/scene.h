@@ -1,0 +1,196 @@
+// The scene as plain data: what Blender delivered, in the form that rendering wants. Knows no GL.
+//
+// Every setter validates its input, throws Error on nonsense, and records what changed, so that the
+// image on the GPU uploads just that. Lengths are metres, matrices map object to world space and
+// colours are scene-linear Rec.709. Ids are chosen by the caller and positive.
+#pragma once
+
+#include "scene/image.h"
+#include "scene/light.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace panoptes::scene {
+
+using Id = int64_t;
+
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::max()};
+  glm::vec3 high{-std::numeric_limits<float>::max()};
+  bool empty() const { return low.x > high.x; }
+  void add(const glm::vec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+// Triangles of one material slot; they lie together.
+struct MaterialRange {
+  int slot = 0;
+  uint32_t first = 0;
+  uint32_t count = 0;
+};
+
+// Per triangle corner: two floats (UV map) or four (colour).
+struct Attribute {
+  std::string name;
+  int channels = 2;
+  std::vector<float> values;
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> triangles;       // ordered by material slot
+  std::vector<glm::uvec3> corner_normals;  // three packed units a triangle (base/packing.glsl)
+  std::vector<MaterialRange> ranges;
+  std::vector<Attribute> attributes;
+  std::string default_uv, default_color;
+  Bounds bounds;
+  std::string warning;  // what had to be left out; empty when nothing
+};
+
+// What a caller hands in for a mesh: Blender's own arrays.
+struct MeshInput {
+  std::string name;
+  std::span<const glm::vec3> positions;           // a vertex
+  std::span<const glm::ivec3> triangle_vertices;  // a triangle
+  std::span<const glm::ivec3> triangle_loops;     // a triangle; index into loop arrays
+  std::span<const int> triangle_slots;            // a triangle
+  std::span<const glm::vec3> loop_normals;        // a loop
+  struct LoopAttribute {
+    std::string name;
+    int channels;
+    std::span<const float> values;  // channels a loop
+  };
+  std::vector<LoopAttribute> attributes;
+  std::string default_uv, default_color;
+};
+
+// Orders triangles by slot, gathers loops to corners and leaves out triangles with a vertex that is
+// not finite (said in Mesh::warning). Throws Error on an index out of range.
+Mesh make_mesh(const MeshInput& input);
+
+struct Instance {
+  Id mesh = 0;
+  glm::mat4 object_to_world{1.0f};  // column-major, as GLM has it
+  int material_offset = 0;          // in Scene::material_table, one entry a slot
+};
+
+struct TextureUse {
+  Id image = 0;
+  bool closest = false;
+  enum class Extension { kRepeat, kExtend, kClip } extension = Extension::kRepeat;
+};
+
+// Conservative: false only where the material certainly never has the property.
+struct MaterialFacts {
+  bool alpha = false;
+  bool emission = false;
+  bool normal_map = false;
+  bool glossy = true;
+  bool transmission = false;
+};
+
+struct Material {
+  std::string name;
+  std::string code;  // defines evaluate_material
+  std::vector<glm::vec4> params;
+  std::vector<TextureUse> textures;
+  std::vector<std::string> attributes;
+  MaterialFacts facts;
+};
+
+struct World {
+  std::string code;  // defines evaluate_world
+  std::vector<glm::vec4> params;
+  std::vector<TextureUse> textures;
+  std::optional<glm::vec3> constant = glm::vec3(0.0f);  // set when the direction does not matter
+  bool black() const { return constant && *constant == glm::vec3(0.0f); }
+};
+
+// Everything that techniques decide on, without a look at a single vertex.
+struct Facts {
+  int64_t triangles = 0;
+  int64_t instances = 0;
+  int lamps[4] = {0, 0, 0, 0};  // by LightType
+  int shadow_lamps[4] = {0, 0, 0, 0};
+  bool extended_lamps = false;  // some lamp has an extent, so it casts penumbrae
+  bool alpha = false, emission = false, normal_map = false, glossy = false, transmission = false;
+  bool world = false;           // the world is not black
+  int lamp_count() const { return lamps[0] + lamps[1] + lamps[2] + lamps[3]; }
+  int shadow_lamp_count() const {
+    return shadow_lamps[0] + shadow_lamps[1] + shadow_lamps[2] + shadow_lamps[3];
+  }
+};
+
+// What has changed since the last take_changes().
+struct Changes {
+  std::set<Id> meshes, materials, material_params, images;  // set or removed
+  std::set<uint32_t> instance_matrices;
+  bool instances = false, lights = false, world = false;
+  bool any() const {
+    return instances || lights || world || !meshes.empty() || !materials.empty() ||
+           !material_params.empty() || !images.empty() || !instance_matrices.empty();
+  }
+};
+
+class Scene {
+ public:
+  void set_mesh(Id id, Mesh mesh);
+  void remove_mesh(Id id);
+  // Leaves out instances whose matrix is not finite (a warning) and those of unknown meshes.
+  void set_instances(std::vector<Instance> instances, std::vector<Id> material_table);
+  void set_instance_matrices(std::span<const int> indices, std::span<const glm::mat4> matrices);
+  void set_material(Id id, Material material);
+  void set_material_params(Id id, std::vector<glm::vec4> params);
+  void remove_material(Id id);
+  void set_image(Id id, Image image);
+  void remove_image(Id id);
+  void set_lights(std::vector<Light> lights);
+  void set_world(World world);
+
+  const std::map<Id, Mesh>& meshes() const { return meshes_; }
+  const std::vector<Instance>& instances() const { return instances_; }
+  const std::vector<Id>& material_table() const { return material_table_; }
+  const std::map<Id, Material>& materials() const { return materials_; }
+  const std::map<Id, Image>& images() const { return images_; }
+  const std::vector<Light>& lights() const { return lights_; }
+  const World& world() const { return world_; }
+
+  // The material of a slot of an instance; 0 (the default grey) where none is set.
+  Id material_of(const Instance& instance, int slot) const;
+  Facts facts() const;
+  Bounds bounds() const;  // world space
+  std::vector<std::string> warnings() const;
+  Changes take_changes();
+
+ private:
+  std::map<Id, Mesh> meshes_;
+  std::vector<Instance> instances_;
+  std::vector<Id> material_table_;
+  std::map<Id, Material> materials_;
+  std::map<Id, Image> images_;
+  std::vector<Light> lights_;
+  World world_;
+  std::string instance_warning_;
+  Changes changes_;
+};
+
+// The world bounds of one placed mesh.
+Bounds placed_bounds(const Bounds& bounds, const glm::mat4& object_to_world);
+
+// Octahedral map in 2 x 16 bits, the same as pack_unit() of base/packing.glsl. `n` need not be unit;
+// a vector that is zero or not finite becomes +Z.
+uint32_t pack_unit(glm::vec3 n);
+
+}  // namespace panoptes::scene

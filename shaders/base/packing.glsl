@@ -1,0 +1,28 @@
+// Unit vectors in 32 bits (octahedral map, 2 x 16 bits; the largest error is .0037 degrees) and the
+// integer hash behind every per-pixel random number.
+
+vec2 octahedral_from_unit(vec3 n) {
+  n /= abs(n.x) + abs(n.y) + abs(n.z);
+  vec2 folded = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+  return n.z >= 0.0 ? n.xy : folded;
+}
+
+uint pack_unit(vec3 n) { return packSnorm2x16(octahedral_from_unit(n)); }
+
+vec3 unpack_unit(uint word) {
+  vec2 o = unpackSnorm2x16(word);
+  vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
+  float fold = max(-n.z, 0.0);
+  n.xy += vec2(n.x >= 0.0 ? -fold : fold, n.y >= 0.0 ? -fold : fold);
+  return normalize(n);
+}
+
+// PCG's permutation on one word (O'Neill 2014; as a hash: Jarzynski and Olano 2020).
+uint hash(uint x) {
+  uint state = x * 747796405u + 2891336453u;
+  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+  return (word >> 22u) ^ word;
+}
+
+// Uniform in [0, 1), from the 24 bits that a float can hold.
+float unit_float(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }

@@ -1,0 +1,10 @@
+#include "rasterize/bins.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 7) uniform usampler2D visibility;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, view.size.xy))) return;
+  atomicAdd(bins[bin_of(texelFetch(visibility, pixel, 0).x)].count, 1u);
+}

@@ -1,0 +1,120 @@
+// One sample of every pixel: what the lamps and the world give, into the film's passes.
+#define G_BUFFER_READ 1
+#include "gpu_scene/view_shared.h"
+#include "rasterize/g_buffer.glsl"
+#include "realtime/brdf.glsl"
+#include "realtime/spherical_harmonics.glsl"
+#include "film/film.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 7) uniform usampler2D visibility;
+#if LAMPS
+layout(binding = 0, rgba32f) readonly uniform image2D diffuse_light;
+#if GLOSSY
+layout(binding = 1, rgba32f) readonly uniform image2D glossy_light;
+#endif
+#endif
+#if EMISSION
+layout(binding = 2, rgba32f) readonly uniform image2D emission;
+#endif
+#if BACKGROUND
+layout(binding = 3, rgba32f) readonly uniform image2D environment;
+#endif
+#if WORLD_LIGHT
+// Coefficients of the world's radiance.
+layout(std140, binding = 1) uniform WorldBlock { vec4 world[9]; };
+
+// Irradiance on a plane that faces `n`, divided by pi: what a white diffuse surface sends back.
+vec3 world_diffuse(vec3 n) {
+  const float band[3] = float[3](1.0, 2.0 / 3.0, 0.25);
+  float basis[9] = spherical_harmonics(n);
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 9; ++k)
+    sum += world[k].rgb * basis[k] * band[k == 0 ? 0 : (k < 4 ? 1 : 2)];
+  return max(sum, vec3(0.0));
+}
+
+// Share of white light that a rough mirror of reflectance f0 reflects (fit: Karis 2013).
+vec3 environment_reflectance(vec3 f0, float roughness, float nv) {
+  vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+  float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
+  vec2 scale = vec2(-1.04, 1.04) * a + r.zw;
+  float f90 = clamp(50.0 * max(max(f0.r, f0.g), f0.b), 0.0, 1.0);
+  return f0 * scale.x + f90 * scale.y;
+}
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, view.size.xy))) return;
+  bool covered = texelFetch(visibility, pixel, 0).x != 0u;
+  GBufferPixel g = read_g_buffer(pixel);
+  vec3 v = -view_direction(vec2(pixel) + 0.5);
+
+  vec3 diffuse = vec3(0.0), glossy = vec3(0.0), emitted = vec3(0.0), background = vec3(0.0);
+#if LAMPS
+  diffuse = imageLoad(diffuse_light, pixel).rgb;
+#if GLOSSY
+  glossy = imageLoad(glossy_light, pixel).rgb;
+#endif
+#endif
+#if WORLD_LIGHT
+  diffuse += g.diffuse * world_diffuse(g.normal);
+  // Reflected and refracted light of the world from its blurred radiance, until rays are traced.
+#if GLOSSY
+  glossy += environment_reflectance(g.specular, g.roughness, max(dot(g.normal, v), 0.0)) *
+            world_diffuse(reflect(-v, g.normal));
+#endif
+  vec3 transmitted = g.transmission * world_diffuse(-v);
+#else
+  vec3 transmitted = vec3(0.0);
+#endif
+#if EMISSION
+  emitted = imageLoad(emission, pixel).rgb;
+#endif
+#if BACKGROUND
+  background = covered ? vec3(0.0) : imageLoad(environment, pixel).rgb;
+#endif
+  if (!covered) {
+    diffuse = vec3(0.0);
+    glossy = vec3(0.0);
+    transmitted = vec3(0.0);
+    emitted = vec3(0.0);
+    g.diffuse = vec3(0.0);
+    g.specular = vec3(0.0);
+    g.normal = vec3(0.0);
+  }
+  vec3 combined = diffuse + glossy + transmitted + emitted + background;
+  film_add(FILM_COMBINED, pixel, vec4(combined, 1.0));
+#ifdef FILM_MOMENTS
+  float brightness = dot(combined, vec3(0.2126, 0.7152, 0.0722));
+  film_add(FILM_MOMENTS, pixel, vec4(brightness, brightness * brightness, 0.0, 0.0));
+#endif
+#ifdef FILM_DEPTH
+  // Depth is not filtered: the first sample decides, as in Cycles.
+  if (view.filtering.w > 0.5)
+    film_set(FILM_DEPTH, pixel, vec4(covered ? dot(g.position, view.axis.xyz) : 1.0e10));
+#endif
+#ifdef FILM_NORMAL
+  film_add(FILM_NORMAL, pixel, vec4(g.normal, 0.0));
+#endif
+#ifdef FILM_DIFFCOL
+  film_add(FILM_DIFFCOL, pixel, vec4(g.diffuse, 0.0));
+#endif
+#ifdef FILM_DIFFDIR
+  film_add(FILM_DIFFDIR, pixel, vec4(diffuse, 0.0));
+#endif
+#ifdef FILM_GLOSSCOL
+  film_add(FILM_GLOSSCOL, pixel,
+           vec4(vec3(any(greaterThan(g.specular, vec3(0.0))) ? 1.0 : 0.0), 0.0));
+#endif
+#ifdef FILM_GLOSSDIR
+  film_add(FILM_GLOSSDIR, pixel, vec4(glossy, 0.0));
+#endif
+#ifdef FILM_EMIT
+  film_add(FILM_EMIT, pixel, vec4(emitted, 0.0));
+#endif
+#ifdef FILM_ENV
+  film_add(FILM_ENV, pixel, vec4(background, 0.0));
+#endif
+}
