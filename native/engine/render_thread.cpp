@@ -81,6 +81,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     realtime::Settings settings;
     settings.shadows.resolution = request.shadow_resolution;
     settings.seed = request.seed;
+    settings.transparent_film = request.transparent_film;
     settings.filter_width = request.filter_width;
     job.set_status("compiling shaders", 0);
     const rasterize::GBufferOptions surfaces{.glossy = plan::runs(plan, "glossy"),

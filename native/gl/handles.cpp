@@ -154,10 +154,6 @@ Sampler::Sampler(const SamplerOptions& options) {
   glSamplerParameteri(id_, GL_TEXTURE_MAG_FILTER, GLint(options.mag_filter));
   glSamplerParameteri(id_, GL_TEXTURE_WRAP_S, GLint(options.wrap_s));
   glSamplerParameteri(id_, GL_TEXTURE_WRAP_T, GLint(options.wrap_t));
-  if (options.depth_compare) {
-    glSamplerParameteri(id_, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    glSamplerParameteri(id_, GL_TEXTURE_COMPARE_FUNC, GL_GEQUAL);
-  }
   if (options.codes && epoxy_has_gl_extension("GL_EXT_texture_sRGB_decode"))
     glSamplerParameteri(id_, GL_TEXTURE_SRGB_DECODE_EXT, GL_SKIP_DECODE_EXT);
 }

@@ -117,7 +117,6 @@ struct SamplerOptions {
   GLenum mag_filter = GL_LINEAR;
   GLenum wrap_s = GL_CLAMP_TO_EDGE;
   GLenum wrap_t = GL_CLAMP_TO_EDGE;
-  bool depth_compare = false;  // sampler2DShadow: 1 where "reference >= depth", as depth is reversed
   bool codes = false;          // sRGB textures give their codes, not decoded light
 };
 

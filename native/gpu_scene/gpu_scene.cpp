@@ -50,7 +50,7 @@ GpuScene::GpuScene(const gl::DeviceInfo& device)
       samplers_[closest][wrap] =
           gl::Sampler({closest ? GLenum(GL_NEAREST_MIPMAP_NEAREST) : GLenum(GL_LINEAR_MIPMAP_LINEAR),
                        closest ? GLenum(GL_NEAREST) : GLenum(GL_LINEAR), wraps[wrap], wraps[wrap],
-                       false, true});
+                       true});
   vertex_array_ = gl::VertexArray::make();
 }
 

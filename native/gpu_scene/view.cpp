@@ -100,12 +100,4 @@ shared::View light_view(const LightView& l, int resolution) {
                    l.far_depth, l.perspective, resolution, resolution);
 }
 
-glm::mat4 clip_from(const LightView& light, const glm::dvec3& other_origin) {
-  // light-relative = other-relative + (other origin - light origin), in double before rounding.
-  const glm::dmat4 clip(light_view(light, 1).clip_from_relative);
-  glm::dmat4 translation(1.0);
-  translation[3] = glm::dvec4(other_origin - light.origin, 1.0);
-  return glm::mat4(clip * translation);
-}
-
 }  // namespace panoptes::gpu_scene

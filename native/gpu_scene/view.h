@@ -34,7 +34,4 @@ struct LightView {
 };
 shared::View light_view(const LightView& light, int resolution);
 
-// The clip transform of `light` for positions that are relative to `other_origin`.
-glm::mat4 clip_from(const LightView& light, const glm::dvec3& other_origin);
-
 }  // namespace panoptes::gpu_scene

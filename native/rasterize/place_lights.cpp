@@ -98,6 +98,27 @@ shared::Light describe(const scene::Light& lamp, const scene::LightSample& sampl
   return light;
 }
 
+shared::ShadowFace describe(const gpu_scene::LightView& face, const glm::dvec3& camera_origin,
+                            int resolution) {
+  const auto vec = [](const glm::dvec3& v, double w) {
+    return glm::vec4(glm::vec3(v), float(w));
+  };
+  const double texel = 2.0 * std::max(face.half_x, face.half_y) / resolution;
+  const double range = face.far_depth - face.near_depth;
+  shared::ShadowFace f{};
+  f.origin = vec(face.origin - camera_origin, texel);
+  f.x = vec(face.x / face.half_x, face.shift.x / face.half_x);
+  f.y = vec(face.y / face.half_y, face.shift.y / face.half_y);
+  f.axis = vec(face.axis, face.perspective ? 1.0 : 0.0);
+  f.half_extent = {float(face.half_x), float(face.half_y), 0, 0};
+  f.depth = face.perspective
+                ? glm::vec4(float(face.near_depth * face.far_depth / range),
+                            float(-face.near_depth / range), float(face.near_depth), 0)
+                : glm::vec4(float(-1.0 / range), float(face.far_depth / range),
+                            float(face.near_depth), 0);
+  return f;
+}
+
 }  // namespace
 
 LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows,
@@ -140,12 +161,7 @@ LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows,
       placed.light.faces = uint32_t(placed.faces.size());
     }
     for (const gpu_scene::LightView& face : placed.faces) {
-      shared::ShadowFace f{};
-      f.clip_from_relative = gpu_scene::clip_from(face, camera_origin);
-      f.texel = {float(2.0 * std::max(face.half_x, face.half_y) / resolution),
-                 face.perspective ? 1.0f : 0.0f, 0, 0};
-      f.tolerance = face.perspective ? glm::vec4(2e-6f, 0, 0, 0) : glm::vec4(0, 1e-6f, 0, 0);
-      set.faces.push_back(f);
+      set.faces.push_back(describe(face, camera_origin, resolution));
     }
     set.lights.push_back(std::move(placed));
   }

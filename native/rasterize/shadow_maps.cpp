@@ -30,7 +30,7 @@ void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
                          settings.resolution, layers, 1});
     framebuffer_ = gl::Framebuffer::make();
     glNamedFramebufferDrawBuffer(framebuffer_.id(), GL_NONE);
-    sampler_ = gl::Sampler({GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE, true, false});
+    sampler_ = gl::Sampler({GL_NEAREST, GL_NEAREST, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE});
     keep = false;
   }
   if (keep || batch.face_count == 0) return;

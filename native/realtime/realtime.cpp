@@ -54,7 +54,8 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
                     fmt::format("GLOSSY {}", int(options.glossy)),
                     fmt::format("EMISSION {}", int(options.emission)),
                     fmt::format("BACKGROUND {}", int(options.background)),
-                    fmt::format("WORLD_LIGHT {}", int(options.world_light))};
+                    fmt::format("WORLD_LIGHT {}", int(options.world_light)),
+                    fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film))};
   film.add_defines(source);
   return source;
 }
@@ -168,7 +169,8 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   }
 
   gl::PassScope scope(timer_, "compose");
-  const ComposeOptions options{lamps_, glossy_, emission_, background_, world_light_};
+  const ComposeOptions options{lamps_,      glossy_,      emission_,
+                               background_, world_light_, settings_.transparent_film};
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();

@@ -22,6 +22,7 @@ namespace panoptes::realtime {
 struct Settings {
   rasterize::ShadowSettings shadows;
   uint32_t seed = 0;
+  bool transparent_film = false;  // the world behind the scene is not part of Combined
   float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
 };
 
@@ -32,6 +33,7 @@ struct LightOptions {
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
   bool lamps = false, glossy = false, emission = false, background = false, world_light = false;
+  bool transparent_film = false;
 };
 gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world);

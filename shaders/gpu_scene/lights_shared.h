@@ -26,10 +26,14 @@ struct Light {
 };
 SHARED_ASSERT_SIZE(Light, 80);
 
+// A shadow map's frame. For a point p relative to `origin`, its depth is dot(p, axis), and its place
+// in the map, -1..1, is (dot(p, x), dot(p, y)) / (perspective ? depth : 1) - (x.w, y.w).
 struct ShadowFace {
-  mat4 clip_from_relative;  // from positions relative to the camera
-  vec4 texel;  // x: width of a texel, metres (sun) or metres at one metre's depth; y: 1 = perspective
-  vec4 tolerance;  // of the depth test: x relative, y absolute
+  vec4 origin;       // xyz: relative to the camera, metres; w: width of a texel (at depth 1)
+  vec4 x, y;         // xyz: unit vectors divided by half_extent
+  vec4 axis;         // xyz: unit; w: 1 = perspective
+  vec4 half_extent;  // x, y: metres, perspective: tangents
+  vec4 depth;        // stored = x / depth + y (perspective), x * depth + y; z: nearest depth
 };
 SHARED_ASSERT_SIZE(ShadowFace, 96);
 

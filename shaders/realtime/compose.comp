@@ -84,8 +84,14 @@ void main() {
     g.specular = vec3(0.0);
     g.normal = vec3(0.0);
   }
-  vec3 combined = diffuse + glossy + transmitted + emitted + background;
-  film_add(FILM_COMBINED, pixel, vec4(combined, 1.0));
+  vec3 combined = diffuse + glossy + transmitted + emitted;
+#if TRANSPARENT_FILM
+  float coverage = covered ? 1.0 : 0.0;
+#else
+  combined += background;
+  const float coverage = 1.0;
+#endif
+  film_add(FILM_COMBINED, pixel, vec4(combined, coverage));
 #ifdef FILM_MOMENTS
   float brightness = dot(combined, vec3(0.2126, 0.7152, 0.0722));
   film_add(FILM_MOMENTS, pixel, vec4(brightness, brightness * brightness, 0.0, 0.0));

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 3) readonly buffer Lights { Light lights[]; };
 #if SHADOWS
 layout(std430, binding = 4) readonly buffer ShadowFaces { ShadowFace shadow_faces[]; };
-layout(binding = 13) uniform sampler2DArrayShadow shadow_maps;
+layout(binding = 13) uniform sampler2DArray shadow_maps;  // reversed depth
 #endif
 layout(binding = 0, rgba32f) uniform image2D diffuse_light;  // reflected by the diffuse lobe
 #if GLOSSY
@@ -28,30 +28,58 @@ uint cube_face(vec3 from_light) {
   return from_light.z >= 0.0 ? 4u : 5u;
 }
 
-// The share of the light that arrives, 0..1. The look-up is moved off the surface by what one
-// filtered texel can span on a plane that is tilted by theta, sqrt(2) * texel * sin(theta), and to
-// the side of the surface that the light is on.
+// How far a surface may rise from texel to texel, in texels, before its slope counts no further.
+const float STEEPEST = 8.0;
+
+// The share of the light that arrives, 0..1: the mean of the four nearest texels, each compared with
+// the depth at which its own ray meets the receiver's plane. So a tilted plane neither shades itself
+// nor shifts the edges that others cast on it; what remains, the surface's curvature and the
+// texel's own tilt, is covered by moving the receiver towards the light by a part of a texel.
 float shadow(Light light, GBufferPixel g, vec3 to_light) {
   vec3 from_light = light.type == LIGHT_SUN ? vec3(0.0) : g.position - light.position.xyz;
   uint face = light.shadow + (light.faces == 6u ? cube_face(from_light) : 0u);
   ShadowFace f = shadow_faces[face];
-  vec3 position = g.position + g.smooth_normal * g.bulge;
-  float along = f.texel.y > 0.5 ? (f.clip_from_relative * vec4(position, 1.0)).w : 1.0;
-  float texel = f.texel.x * along;
-  float cosine = dot(g.geometric_normal, to_light);
-  float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-  // Rounding of the coordinates: a few units in the last place of the largest.
-  float magnitude = max(max(abs(position.x), abs(position.y)), abs(position.z)) + abs(along);
-  float offset = 1.5 * texel * sine + 4.0e-7 * magnitude;
-  position += g.geometric_normal * (cosine < 0.0 ? -offset : offset);
+  bool perspective = f.axis.w > 0.5;
+  vec3 p = g.position + g.smooth_normal * g.bulge - f.origin.xyz;
+  float depth = dot(p, f.axis.xyz);
+  float spread = perspective ? depth : 1.0;
+  if (spread <= 0.0) return 1.0;
+  vec2 shift = vec2(f.x.w, f.y.w);
+  vec2 ndc = vec2(dot(p, f.x.xyz), dot(p, f.y.xyz)) / spread - shift;
+  if (any(greaterThan(abs(ndc), vec2(1.0)))) return 1.0;
 
-  vec4 clip = f.clip_from_relative * vec4(position, 1.0);
-  if (clip.w <= 0.0) return 1.0;
-  vec3 ndc = clip.xyz / clip.w;
-  if (any(greaterThan(abs(ndc.xy), vec2(1.0)))) return 1.0;
-  // Depth is reversed: nearer is greater.
-  float depth = ndc.z * (1.0 + f.tolerance.x) + f.tolerance.y;
-  return texture(shadow_maps, vec4(ndc.xy * 0.5 + 0.5, float(face - batch_first_face), depth));
+  float resolution = float(textureSize(shadow_maps, 0).x);
+  vec2 place = (ndc * 0.5 + 0.5) * resolution - 0.5;
+  vec2 corner = floor(place), fraction = place - corner;
+  vec4 stored = textureGather(shadow_maps, vec3((corner + 1.0) / resolution,
+                                                float(face - batch_first_face)));
+
+  // The plane in the map's frame, per unit of the map's coordinates.
+  vec3 n = g.geometric_normal;
+  float height = dot(n, p), along = dot(n, f.axis.xyz);
+  vec2 slope = vec2(dot(n, f.x.xyz) * f.half_extent.x * f.half_extent.x,
+                    dot(n, f.y.xyz) * f.half_extent.y * f.half_extent.y);
+  float texel = f.origin.w * spread;
+  float cosine = abs(dot(n, to_light));
+  float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 1.0e-6);
+  float magnitude = max(max(abs(p.x), abs(p.y)), abs(p.z));
+  float bias = texel * (1.0 + 0.5 * min(tangent, 4.0)) + 1.0e-6 * magnitude;
+  float reach = STEEPEST * texel;
+
+  const vec2 taps[4] = vec2[4](vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(1.0, 0.0), vec2(0.0, 0.0));
+  float lit = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    vec2 tap = (corner + taps[i] + 0.5) / resolution * 2.0 - 1.0 + shift;
+    float across = dot(tap, slope);
+    float met = perspective ? height / (along + across) : (height - across) / along;
+    // A plane seen edge-on is met nowhere.
+    if (!(abs(met - depth) <= reach)) met = met > depth ? depth + reach : depth - reach;
+    met = max(met - bias, f.depth.z);
+    float z = perspective ? f.depth.x / met + f.depth.y : f.depth.x * met + f.depth.y;
+    vec2 weight = mix(1.0 - fraction, fraction, taps[i]);
+    lit += weight.x * weight.y * (z >= stored[i] ? 1.0 : 0.0);
+  }
+  return lit;
 }
 #endif
 
