@@ -76,17 +76,19 @@ scene::Image load_file(const std::string& name, const std::string& path, bool sr
 
 scene::Image load_memory(const std::string& name, std::span<const char> data, bool srgb,
                          scene::AlphaMode alpha) {
-  // The name's ending only hints at the format; OpenImageIO looks at the data as well.
-  OIIO::Filesystem::IOMemReader reader(const_cast<char*>(data.data()), data.size());
-  const OIIO::ImageSpec config = keep_alpha_as_stored();
-  for (const char* hint : {"memory.png", "memory.jpg", "memory.exr", "memory.hdr", "memory.tif",
-                           "memory.tga", "memory.bmp"}) {
-    reader.seek(0);
-    auto input = OIIO::ImageInput::open(hint, &config, &reader);
-    if (input) return read(std::move(input), name, srgb, alpha);
+  // Every reader looks for its own mark at the data's start; Targa has none and comes last.
+  for (const char* format : {"png", "jpeg", "openexr", "hdr", "tiff", "webp", "bmp", "targa"}) {
+    auto input = OIIO::ImageInput::create(format);
+    if (!input || !input->supports("ioproxy")) continue;
+    OIIO::Filesystem::IOMemReader reader(const_cast<char*>(data.data()), data.size());
+    OIIO::ImageSpec spec;
+    input->set_ioproxy(&reader);
+    if (input->open(name, spec, keep_alpha_as_stored()))
+      return read(std::move(input), name, srgb, alpha);
   }
-  fail("packed image '{}' is in a format that cannot be decoded ({}): unpack and re-save it as PNG",
-       name, OIIO::geterror());
+  OIIO::geterror();  // what the refusals left behind would show up with the next image
+  fail("packed image '{}' is in a format that cannot be decoded: unpack it and re-save it as PNG",
+       name);
 }
 
 }  // namespace panoptes::image_io

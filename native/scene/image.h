@@ -14,9 +14,9 @@ enum class AlphaMode { kStraight, kPremultiplied, kChannelPacked, kNone };
 struct Image {
   std::string name;
   int width = 0, height = 0;
-  bool srgb = false;  // bytes hold sRGB codes; floats are always linear
+  bool srgb = false;  // the values are sRGB codes, 0..1 or 0..255; else linear
   // Exactly one of the two is filled, four channels a pixel. Colour is premultiplied by alpha, in
-  // sRGB codes for sRGB bytes, as Cycles filters it.
+  // codes where they are codes, as Cycles filters it.
   std::vector<uint8_t> bytes;
   std::vector<float> floats;
 
