@@ -10,6 +10,9 @@ namespace {
 // Wider cones become cubes: their texels would grow too large towards the rim.
 constexpr double kWidestFlatSpot = 2.1;  // rad, 120 degrees
 
+// llvmpipe cuts an invocation off after 65 535 loop iterations; each lamp takes up to five.
+constexpr uint32_t kLightsPerBatch = 4096;
+
 struct Frame {
   glm::dvec3 x, y, axis;
 };
@@ -149,8 +152,8 @@ LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows,
       }
     }
 
-    // A batch is closed when this lamp's faces would not fit.
-    if (set.batches.empty() ||
+    // A batch is closed when it has lamps enough or this lamp's faces would not fit.
+    if (set.batches.empty() || set.batches.back().light_count == kLightsPerBatch ||
         set.batches.back().face_count + placed.faces.size() > size_t(layers))
       set.batches.push_back({uint32_t(i), 0, uint32_t(set.faces.size()), 0});
     LightBatch& batch = set.batches.back();
