@@ -33,7 +33,11 @@ void Film::add_defines(gl::ProgramSource& source) const {
   if (moments_) source.defines.push_back(fmt::format("FILM_MOMENTS {}", moments_layer_));
 }
 
-void Film::bind() const { sums_.bind_image(7, GL_READ_WRITE); }
+void Film::bind() const {
+  sums_.bind_image(7, GL_WRITE_ONLY);
+  sums_.bind(8);
+  glBindSampler(8, 0);  // one of a material's images may still sit there
+}
 
 std::vector<float> Film::layer(int index) const {
   std::vector<float> values(size_t(width_) * size_t(height_) * 4);

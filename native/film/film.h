@@ -18,7 +18,7 @@ class Film {
 
   // Gives a program the layers of the passes that there are.
   void add_defines(gl::ProgramSource& source) const;
-  void bind() const;  // to the image unit of film/film.glsl
+  void bind() const;  // to the units of film/film.glsl
 
   // The pass after `samples` samples, channels a pixel, rows bottom to top; colour is divided out
   // and light is scaled by `exposure`. Throws Error for a pass that was not asked for.

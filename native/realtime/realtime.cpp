@@ -164,7 +164,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
     g_buffer_.bind_bins();
     environment_.bind_image(0, GL_WRITE_ONLY);
     g_buffer_.dispatch_background();
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     stop_if(cancelled);
   }
 
@@ -174,14 +174,14 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();
-  if (lamps_) diffuse_light_.bind_image(0, GL_READ_ONLY);
-  if (lamps_ && glossy_) glossy_light_.bind_image(1, GL_READ_ONLY);
-  if (emission_) g_buffer_.emission().bind_image(2, GL_READ_ONLY);
-  if (background_) environment_.bind_image(3, GL_READ_ONLY);
+  if (lamps_) diffuse_light_.bind(0);
+  if (lamps_ && glossy_) glossy_light_.bind(1);
+  if (emission_) g_buffer_.emission().bind(2);
+  if (background_) environment_.bind(3);
   if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
   film.bind();
   glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 void Realtime::add_lamps(uint32_t index, const shared::View& view,
@@ -224,13 +224,15 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     if (shadows_) shadow_maps_.bind(13);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, lights_buffer_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, faces_buffer_.id());
-    diffuse_light_.bind_image(0, GL_READ_WRITE);
-    if (glossy_) glossy_light_.bind_image(1, GL_READ_WRITE);
+    diffuse_light_.bind(0);
+    diffuse_light_.bind_image(0, GL_WRITE_ONLY);
+    if (glossy_) glossy_light_.bind(1);
+    if (glossy_) glossy_light_.bind_image(1, GL_WRITE_ONLY);
     glUniform1ui(2, batch.first_light);
     glUniform1ui(3, batch.light_count);
     glUniform1ui(4, batch.first_face);
     g_buffer_.dispatch_surfaces();
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     stop_if(cancelled);
   }
 }

@@ -9,16 +9,16 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform usampler2D visibility;
 #if LAMPS
-layout(binding = 0, rgba32f) readonly uniform image2D diffuse_light;
+layout(binding = 0) uniform sampler2D diffuse_light;
 #if GLOSSY
-layout(binding = 1, rgba32f) readonly uniform image2D glossy_light;
+layout(binding = 1) uniform sampler2D glossy_light;
 #endif
 #endif
 #if EMISSION
-layout(binding = 2, rgba32f) readonly uniform image2D emission;
+layout(binding = 2) uniform sampler2D emission;
 #endif
 #if BACKGROUND
-layout(binding = 3, rgba32f) readonly uniform image2D environment;
+layout(binding = 3) uniform sampler2D environment;
 #endif
 #if WORLD_LIGHT
 // Coefficients of the world's radiance.
@@ -53,9 +53,9 @@ void main() {
 
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0), emitted = vec3(0.0), background = vec3(0.0);
 #if LAMPS
-  diffuse = imageLoad(diffuse_light, pixel).rgb;
+  diffuse = texelFetch(diffuse_light, pixel, 0).rgb;
 #if GLOSSY
-  glossy = imageLoad(glossy_light, pixel).rgb;
+  glossy = texelFetch(glossy_light, pixel, 0).rgb;
 #endif
 #endif
 #if WORLD_LIGHT
@@ -70,10 +70,10 @@ void main() {
   vec3 transmitted = vec3(0.0);
 #endif
 #if EMISSION
-  emitted = imageLoad(emission, pixel).rgb;
+  emitted = texelFetch(emission, pixel, 0).rgb;
 #endif
 #if BACKGROUND
-  background = covered ? vec3(0.0) : imageLoad(environment, pixel).rgb;
+  background = covered ? vec3(0.0) : texelFetch(environment, pixel, 0).rgb;
 #endif
   if (!covered) {
     diffuse = vec3(0.0);

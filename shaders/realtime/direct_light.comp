@@ -12,10 +12,13 @@ layout(std430, binding = 3) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 4) readonly buffer ShadowFaces { ShadowFace shadow_faces[]; };
 layout(binding = 13) uniform sampler2DArray shadow_maps;  // reversed depth
 #endif
-layout(binding = 0, rgba32f) uniform image2D diffuse_light;  // reflected by the diffuse lobe
+layout(binding = 0, rgba32f) writeonly uniform image2D diffuse_light;  // by the diffuse lobe
 #if GLOSSY
-layout(binding = 1, rgba32f) uniform image2D glossy_light;
+layout(binding = 1, rgba32f) writeonly uniform image2D glossy_light;
 #endif
+// What earlier batches left.
+layout(binding = 0) uniform sampler2D diffuse_before;
+layout(binding = 1) uniform sampler2D glossy_before;
 layout(location = 2) uniform uint first_light;
 layout(location = 3) uniform uint light_count;
 layout(location = 4) uniform uint batch_first_face;  // the one in layer 0 of shadow_maps
@@ -117,10 +120,10 @@ void main() {
     glossy += arriving * glossy_lobe(g.specular, g.roughness, g.normal, v, to_light);
 #endif
   }
-  vec4 before = imageLoad(diffuse_light, pixel);
+  vec4 before = texelFetch(diffuse_before, pixel, 0);
   imageStore(diffuse_light, pixel, vec4(before.rgb + diffuse * g.diffuse, 1.0));
 #if GLOSSY
-  before = imageLoad(glossy_light, pixel);
+  before = texelFetch(glossy_before, pixel, 0);
   imageStore(glossy_light, pixel, vec4(before.rgb + glossy, 1.0));
 #endif
 }
