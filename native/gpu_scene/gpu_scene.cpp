@@ -21,7 +21,8 @@ constexpr const char* kBrokenMaterial =
     "  closure_diffuse(surface, vec3(1.0), vec3(1.0, 0.0, 1.0), 0.0, hit.normal);\n"
     "}\n";
 
-constexpr uint32_t kNoAttribute = 0xffffffffu;  // NO_ATTRIBUTE of geometry.glsl
+// NO_ATTRIBUTE and IS_COLOR of geometry.glsl.
+constexpr uint32_t kNoAttribute = 0xffffffffu, kIsColor = 0x80000000u;
 constexpr size_t kMeshWords = 8;                // MESH_ATTRIBUTES of geometry.glsl
 
 struct DrawCommand {
@@ -259,7 +260,7 @@ void GpuScene::update_tables(const scene::Scene& scene) {
     }
     for (size_t i = 0; i < source.attributes.size(); ++i) {
       const scene::Attribute& attribute = source.attributes[i];
-      const uint32_t first = mesh.attributes[i].first;
+      const uint32_t first = mesh.attributes[i].first | (attribute.channels == 4 ? kIsColor : 0);
       if (attribute.channels == 2 && attribute.name == source.default_uv)
         record[kMeshWords] = first;
       if (attribute.channels == 4 && attribute.name == source.default_color)

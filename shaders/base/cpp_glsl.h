@@ -13,7 +13,7 @@ using uint = uint32_t;
 }  // namespace panoptes::shared
 #define SHARED_BEGIN namespace panoptes::shared {
 #define SHARED_END }
-#define SHARED_ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
+#define SHARED_ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes));
 #else
 #define SHARED_BEGIN
 #define SHARED_END

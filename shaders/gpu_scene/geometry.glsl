@@ -10,13 +10,14 @@ layout(binding = 3) uniform samplerBuffer corner_attributes;   // pairs of float
 layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh record}
 layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute names of materials
 
-// Words of a mesh record in `tables`, then one word an attribute name: the first pair of floats, or
-// NO_ATTRIBUTE.
+// Words of a mesh record in `tables`, then one word an attribute name: the first pair of floats and
+// IS_COLOR, or NO_ATTRIBUTE.
 const int MESH_VERTEX_BASE = 0;
 const int MESH_TRIANGLE_BASE = 1;
 const int MESH_GENERATED = 2;  // six floats: scale and offset from object space to 0..1
 const int MESH_ATTRIBUTES = 8;
 const uint NO_ATTRIBUTE = 0xffffffffu;
+const uint IS_COLOR = 0x80000000u;  // two pairs a corner instead of one
 const int UV_DEFAULT = 0;
 const int COLOR_DEFAULT = 1;
 
@@ -147,8 +148,9 @@ Hit fetch_hit(Ray ray, uint instance, uint triangle) {
 
 // --- attributes, by the name index that the mesh record is ordered by ------------------------------
 
-vec2 interpolate_pairs(Hit hit, int first, int stride) {
-  int i = first + (hit.triangle - int(table(hit.mesh + MESH_TRIANGLE_BASE))) * 3 * stride;
+vec2 interpolate_pairs(Hit hit, uint word, int pair) {
+  int stride = (word & IS_COLOR) != 0u ? 2 : 1;
+  int i = int(word & ~IS_COLOR) + pair + (hit.triangle - int(table(hit.mesh + MESH_TRIANGLE_BASE))) * 3 * stride;
   return hit.barycentrics.x * texelFetch(corner_attributes, i).xy +
          hit.barycentrics.y * texelFetch(corner_attributes, i + stride).xy +
          hit.barycentrics.z * texelFetch(corner_attributes, i + 2 * stride).xy;
@@ -156,15 +158,16 @@ vec2 interpolate_pairs(Hit hit, int first, int stride) {
 
 // Texture coordinates; (0, 0) where the mesh has none of that name, as in Cycles.
 vec2 hit_uv(Hit hit, int name) {
-  uint first = table(hit.mesh + MESH_ATTRIBUTES + name);
-  return first == NO_ATTRIBUTE ? vec2(0.0) : interpolate_pairs(hit, int(first), 1);
+  uint word = table(hit.mesh + MESH_ATTRIBUTES + name);
+  return word == NO_ATTRIBUTE ? vec2(0.0) : interpolate_pairs(hit, word, 0);
 }
 
-// Scene-linear colour; black with alpha 0 where the mesh has none of that name, as in Cycles.
+// Scene-linear colour, or (u, v, 0, 1) of a UV map; black with alpha 0 where the mesh has none of that name, as in Cycles.
 vec4 hit_color(Hit hit, int name) {
-  uint first = table(hit.mesh + MESH_ATTRIBUTES + name);
-  if (first == NO_ATTRIBUTE) return vec4(0.0);
-  return vec4(interpolate_pairs(hit, int(first), 2), interpolate_pairs(hit, int(first) + 1, 2));
+  uint word = table(hit.mesh + MESH_ATTRIBUTES + name);
+  if (word == NO_ATTRIBUTE) return vec4(0.0);
+  vec2 pair = interpolate_pairs(hit, word, 0);
+  return (word & IS_COLOR) != 0u ? vec4(pair, interpolate_pairs(hit, word, 1)) : vec4(pair, 0.0, 1.0);
 }
 
 vec3 hit_world_position(Hit hit) { return hit.position + view.world_origin.xyz; }

@@ -24,7 +24,7 @@ struct Light {
   uint faces;      // 1, or 6 of a cube in the order +x -x +y -y +z -z
   uint padding;
 };
-SHARED_ASSERT_SIZE(Light, 80);
+SHARED_ASSERT_SIZE(Light, 80)
 
 // A shadow map's frame. For a point p relative to `origin`, its depth is dot(p, axis), and its place
 // in the map, -1..1, is (dot(p, x), dot(p, y)) / (perspective ? depth : 1) - (x.w, y.w).
@@ -35,6 +35,6 @@ struct ShadowFace {
   vec4 half_extent;  // x, y: metres, perspective: tangents
   vec4 depth;        // stored = x / depth + y (perspective), x * depth + y; z: nearest depth
 };
-SHARED_ASSERT_SIZE(ShadowFace, 96);
+SHARED_ASSERT_SIZE(ShadowFace, 96)
 
 SHARED_END

@@ -21,16 +21,23 @@ float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
 // --- images -----------------------------------------------------------------------------------------
 
+// The triangle's two edges in texture coordinates; false where the mesh has no UV map of that name.
+bool uv_edges(Hit hit, int name, out vec2 edge1, out vec2 edge2) {
+  uint word = table(hit.mesh + MESH_ATTRIBUTES + name);
+  edge1 = edge2 = vec2(0.0);
+  if (word == NO_ATTRIBUTE || (word & IS_COLOR) != 0u) return false;
+  int i = int(word) + (hit.triangle - int(table(hit.mesh + MESH_TRIANGLE_BASE))) * 3;
+  vec2 uv = texelFetch(corner_attributes, i).xy;
+  edge1 = texelFetch(corner_attributes, i + 1).xy - uv;
+  edge2 = texelFetch(corner_attributes, i + 2).xy - uv;
+  return true;
+}
+
 // How far texture coordinates run along one metre of the surface.
 float uv_per_metre(Hit hit) {
-  uint first = table(hit.mesh + MESH_ATTRIBUTES + UV_DEFAULT);
-  if (first == NO_ATTRIBUTE) return 0.0;
-  int i = int(first) + (hit.triangle - int(table(hit.mesh + MESH_TRIANGLE_BASE))) * 3;
-  vec2 uv0 = texelFetch(corner_attributes, i).xy;
-  vec2 d1 = texelFetch(corner_attributes, i + 1).xy - uv0;
-  vec2 d2 = texelFetch(corner_attributes, i + 2).xy - uv0;
-  float uv_area = abs(d1.x * d2.y - d1.y * d2.x);
-  return hit.area > 0.0 ? sqrt(uv_area / hit.area) : 0.0;
+  vec2 d1, d2;
+  if (!uv_edges(hit, UV_DEFAULT, d1, d2) || !(hit.area > 0.0)) return 0.0;
+  return sqrt(abs(d1.x * d2.y - d1.y * d2.x) / hit.area);
 }
 
 vec3 linear_from_srgb(vec3 code) {
@@ -81,12 +88,8 @@ vec3 finish_normal_map(Hit hit, vec3 n, float strength) {
 }
 
 vec3 normal_map_tangent(Hit hit, int uv_attribute, vec3 color, float strength) {
-  uint first = table(hit.mesh + MESH_ATTRIBUTES + uv_attribute);
-  if (first == NO_ATTRIBUTE) return hit.normal;
-  int i = int(first) + (hit.triangle - int(table(hit.mesh + MESH_TRIANGLE_BASE))) * 3;
-  vec2 uv0 = texelFetch(corner_attributes, i).xy;
-  vec2 d1 = texelFetch(corner_attributes, i + 1).xy - uv0;
-  vec2 d2 = texelFetch(corner_attributes, i + 2).xy - uv0;
+  vec2 d1, d2;
+  if (!uv_edges(hit, uv_attribute, d1, d2)) return hit.normal;
   float handedness = d1.x * d2.y - d1.y * d2.x < 0.0 ? -1.0 : 1.0;
   vec3 n = hit.normal_unflipped;
   vec3 t = (hit.edge1 * d2.y - hit.edge2 * d1.y) * handedness;

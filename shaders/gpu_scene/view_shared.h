@@ -21,7 +21,7 @@ struct View {
                      // (perspective) or at any distance (orthographic); z: 1 = perspective;
                      // w: 1 = first sample of the picture
 };
-SHARED_ASSERT_SIZE(View, 64 + 16 * 11);
+SHARED_ASSERT_SIZE(View, 64 + 16 * 11)
 
 // What is drawn at once: one material of one instance. The visibility buffer names it by index + 1.
 struct DrawRecord {
@@ -30,7 +30,7 @@ struct DrawRecord {
   uint first_triangle;  // in the mesh's own triangles
   uint index;           // this record's own
 };
-SHARED_ASSERT_SIZE(DrawRecord, 16);
+SHARED_ASSERT_SIZE(DrawRecord, 16)
 
 SHARED_END
 

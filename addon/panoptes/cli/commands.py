@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The commands: render, snapshot, viewport."""
+
+import contextlib
+import json
+import os
+
+import bpy
+
+from .. import compat, native, passes, requests, session
+from . import options as scene_options
+from .failure import Failure
+
+_FORMATS = {'.png': 'PNG', '.exr': 'OPEN_EXR_MULTILAYER'}
+# Old files hold the first bytes of a .blend; new ones are compressed with gzip or Zstandard.
+_BLEND_MAGIC = (b'BLENDER', b'\x1f\x8b', b'\x28\xb5\x2f\xfd')
+
+
+def _open(path):
+    """Open a .blend; raises `Failure`."""
+    if not os.path.exists(path):
+        raise Failure(f"There is no file '{path}'; check the path.")
+    if os.path.isdir(path):
+        raise Failure(f"'{path}' is a folder; give a .blend file.")
+    try:
+        with open(path, 'rb') as file:
+            start = file.read(8)
+    except OSError as error:
+        raise Failure(f"'{path}' cannot be read ({error.strerror}); check its permissions.") from None
+    if not start.startswith(_BLEND_MAGIC):
+        raise Failure(f"'{path}' is not a .blend file; give one that Blender has saved.")
+    try:
+        bpy.ops.wm.open_mainfile(filepath=os.path.abspath(path), load_ui=False, use_scripts=False)
+    except RuntimeError as error:
+        raise Failure(f"Blender {bpy.app.version_string} cannot open '{path}' "
+                      f'({native.one_line(error)}); save it again with this version.') from None
+
+
+def _prepare(options):
+    """Open the file and bring its scene to what the options say; return the scene."""
+    _open(options.file)
+    scene = bpy.context.scene
+    scene.render.engine = 'PANOPTES'
+    scene_options.apply(options, scene)
+    if scene.camera is None:
+        raise Failure(f"'{options.file}' has no camera in scene '{scene.name}'; add a camera and "
+                      'make it the active one.')
+    return scene
+
+
+def _check_output(path, suffixes=None):
+    """Return the absolute path of an output file; raises `Failure` if it cannot be written."""
+    suffix = os.path.splitext(path)[1].lower()
+    if suffixes and suffix not in suffixes:
+        raise Failure(f"'{path}' has no format that is known; end it in {' or '.join(suffixes)}.")
+    path = os.path.abspath(path)
+    folder = os.path.dirname(path)
+    if not os.path.isdir(folder):
+        raise Failure(f"There is no folder '{folder}'; make it first.")
+    if os.path.isdir(path):
+        raise Failure(f"'{path}' is a folder; give the name of a file.")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise Failure(f"The folder '{folder}' cannot be written; choose another or change its "
+                      'permissions.')
+    return path
+
+
+@contextlib.contextmanager
+def _replacing(path):
+    """Give the name of a temporary file that becomes `path` if all goes well, else vanishes."""
+    folder, name = os.path.split(path)
+    stem, suffix = os.path.splitext(name)
+    temporary = os.path.join(folder, f'.{stem}.{os.getpid()}.part{suffix}')
+    try:
+        yield temporary
+        if not os.path.isfile(temporary):
+            raise Failure(f"'{path}' was not written; check the free space in '{folder}'.")
+        os.replace(temporary, path)
+    except OSError as error:
+        raise Failure(f"'{path}' cannot be written ({error.strerror}); check the free space and the "
+                      'permissions of its folder.') from None
+    finally:
+        with contextlib.suppress(OSError):
+            os.remove(temporary)
+
+
+def _write_json(path, data):
+    with _replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
+        json.dump(data, file, indent=2)
+        file.write('\n')
+
+
+def _set_output(scene, temporary, file_format):
+    render, image = scene.render, scene.render.image_settings
+    render.filepath = temporary
+    render.use_overwrite = True
+    render.use_placeholder = False
+    render.use_file_extension = False
+    compat.set_file_format(image, file_format)
+    if file_format == 'PNG':
+        image.color_mode = 'RGBA' if render.film_transparent else 'RGB'
+        image.color_depth = '8'
+        return
+    image.color_depth = '32'
+    image.exr_codec = 'ZIP'
+    for layer in scene.view_layers:
+        passes.enable_all(layer)
+
+
+def render(options, console):
+    """Render one frame to a PNG (through the view transform) or a multilayer EXR (scene-linear)."""
+    path = _check_output(options.output, tuple(_FORMATS))
+    stats_path = _check_output(options.stats) if options.stats else None
+    scene = _prepare(options)
+    file_format = _FORMATS[os.path.splitext(path)[1].lower()]
+    session.progress_listener = console.progress
+    try:
+        with _replacing(path) as temporary:
+            _set_output(scene, temporary, file_format)
+            _render_frame()
+    finally:
+        session.progress_listener = None
+        console.clear()
+    stats = session.last_stats
+    for sentence in stats['warnings']:
+        console.warning(sentence)
+    if stats_path:
+        _write_json(stats_path, stats)
+
+
+def _render_frame():
+    """Do what F12 does and save; raises `Failure`."""
+    try:
+        bpy.ops.render.render(write_still=True)
+    except RuntimeError as error:
+        if not session.last_error:
+            raise Failure(f'Blender could not render ({native.one_line(error)}); open the file in '
+                          'Blender and render it there for details.') from None
+    if session.last_error:
+        raise Failure(session.last_error)
+    if session.last_stats is None:
+        raise Failure('Nothing was rendered; enable a view layer for rendering, and the Scene strip '
+                      'or the compositor only where they lead to a picture.')
+
+
+def snapshot(options, console):
+    """Write the scene and the request of a render for the command-line driver."""
+    path = _check_output(options.output)
+    _prepare(options)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    warnings = []
+    request = requests.final(depsgraph, [entry.name for entry in passes.PASSES], warnings.append)
+    with session.exclusive(wait=True):
+        console.progress(0.0, 'Synchronising the scene')
+        mirror = session.mirror()
+        report = session.final_sync.sync(mirror, depsgraph, incremental=False)
+        with _replacing(path) as temporary:
+            mirror.engine.write_snapshot(temporary, request)
+    console.clear()
+    for sentence in dict.fromkeys(warnings + report.warnings):
+        console.warning(sentence)
+
+
+def viewport(options, console):
+    """Open a file with Panoptes chosen and every 3D View rendered; Blender stays open."""
+    if bpy.app.background:
+        raise Failure('The viewport needs a window; start it on a machine with a display.')
+    path = os.path.abspath(options.file)
+    _open(path)
+    _show_rendered()
+
+
+def _show_rendered():
+    for scene in bpy.data.scenes:
+        scene.render.engine = 'PANOPTES'
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            for space in area.spaces:
+                if space.type == 'VIEW_3D':
+                    space.shading.type = 'RENDERED'
+
+
+COMMANDS = {'render': render, 'snapshot': snapshot, 'viewport': viewport}

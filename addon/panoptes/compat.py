@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every difference between Blender 3.4 and 5.x that the add-on has to know."""
+
+import bpy
+import numpy as np
+
+VERSION = bpy.app.version
+
+# The Principled BSDF of 4.0 has other sockets and another diffuse term (Lambert, not Burley).
+PRINCIPLED_GENERATION = 4 if VERSION >= (4, 0, 0) else 3
+
+# Sockets of the Principled BSDF by the fields that they fill.
+PRINCIPLED_SOCKETS = {
+    'metallic': 'Metallic',
+    'roughness': 'Roughness',
+    'specular': 'Specular',
+    'specular_tint': 'Specular Tint',
+    'transmission': 'Transmission',
+    'ior': 'IOR',
+    'emission': 'Emission',
+    'clearcoat': 'Clearcoat',
+    'clearcoat_roughness': 'Clearcoat Roughness',
+    'sheen': 'Sheen',
+}
+if PRINCIPLED_GENERATION == 4:
+    PRINCIPLED_SOCKETS.update({
+        'specular': 'Specular IOR Level',
+        'transmission': 'Transmission Weight',
+        'emission': 'Emission Color',
+        'clearcoat': 'Coat Weight',
+        'clearcoat_roughness': 'Coat Roughness',
+        'sheen': 'Sheen Weight',
+    })
+
+
+# Nodes
+
+
+def find_socket(sockets, name):
+    """Return the socket with this identifier, else with this name, else None.
+
+    Identifiers outlive the renamings (Fac became Factor in 5.x, its identifier stayed).
+    """
+    by_name = None
+    for socket in sockets:
+        if socket.identifier == name:
+            return socket
+        if by_name is None and socket.name == name and socket.enabled:
+            by_name = socket
+    return by_name
+
+
+def uses_nodes(owner):
+    """Tell whether a material, world or light is described by its node tree."""
+    if owner.node_tree is None or len(owner.node_tree.nodes) == 0:
+        return False
+    # From 5.0 on (lamps: 5.2) the switch is always on, and reading it is deprecated.
+    since = (5, 2, 0) if isinstance(owner, bpy.types.Light) else (5, 0, 0)
+    return VERSION >= since or owner.use_nodes
+
+
+# Data-blocks
+
+
+def stable_key(data):
+    """Return a hashable name of a data-block that lasts while it lives in this session."""
+    data = data.original
+    uid = getattr(data, 'session_uid', 0)
+    if uid:
+        return (data.bl_rna.identifier, uid)
+    library = data.library.filepath if data.library else ''
+    return (data.bl_rna.identifier, library, data.name)
+
+
+def light_radiance_scale(light):
+    """Return (r, g, b) by which a light's colour is multiplied, for settings newer than 3.4."""
+    factor = 2.0 ** getattr(light, 'exposure', 0.0)
+    if getattr(light, 'use_temperature', False):
+        return tuple(c * factor for c in light.temperature_color)
+    return (factor, factor, factor)
+
+
+def light_casts_shadow(light):
+    """Tell whether a light casts shadows, by Blender's switch and by that of Cycles before 4.x."""
+    return light.use_shadow and getattr(getattr(light, 'cycles', None), 'cast_shadow', True)
+
+
+def image_is_data(image):
+    """Tell whether an image holds numbers (Non-Color), not colours."""
+    return image.colorspace_settings.is_data
+
+
+def image_is_srgb(image):
+    """Tell whether an image's stored values are encoded with (nearly) the sRGB curve."""
+    name = image.colorspace_settings.name
+    linear = ('Linear', 'Non-Color', 'Raw', 'XYZ', 'ACES2065', 'ACEScg', 'Utility - Raw', 'scene_linear')
+    return not image_is_data(image) and not name.startswith(linear)
+
+
+def image_has_straight_color(image):
+    """Tell whether an image's colour is divided by alpha where a tree uses both."""
+    return not image_is_data(image) and image.alpha_mode not in ('CHANNEL_PACKED', 'NONE')
+
+
+# Meshes
+
+
+def loop_normals(mesh):
+    """Return the shading normals of a mesh's loops, float32[L, 3]."""
+    normals = np.empty((len(mesh.loops), 3), np.float32)
+    if VERSION >= (4, 1, 0):
+        mesh.corner_normals.foreach_get('vector', normals.reshape(-1))
+    else:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get('normal', normals.reshape(-1))
+    return normals
+
+
+def loop_vertices(mesh):
+    """Return the vertex index of each loop, int32[L]."""
+    vertices = np.empty(len(mesh.loops), np.int32)
+    attribute = mesh.attributes.get('.corner_vert') if VERSION >= (3, 6, 0) else None
+    if attribute is not None:
+        attribute.data.foreach_get('value', vertices)
+    else:
+        mesh.loops.foreach_get('vertex_index', vertices)
+    return vertices
+
+
+def uv_coordinates(layer, count):
+    """Return a UV map's coordinates, float32[count, 2]."""
+    uv = np.empty((count, 2), np.float32)
+    if hasattr(layer, 'uv'):
+        layer.uv.foreach_get('vector', uv.reshape(-1))
+    else:
+        layer.data.foreach_get('uv', uv.reshape(-1))
+    return uv
+
+
+def default_color_name(mesh):
+    """Return the name of the colour attribute that renders use, or ''."""
+    colors = mesh.color_attributes
+    name = getattr(mesh.attributes, 'default_color_name', None)
+    if name is None:
+        index = colors.render_color_index
+        name = colors[index].name if 0 <= index < len(colors) else ''
+    return name or ''
+
+
+# Rendering
+
+
+def write_pass(render_pass, pixels):
+    """Fill a pass of a render result from float32[H, W, C], row 0 at the bottom."""
+    flat = np.ascontiguousarray(pixels, np.float32)
+    if VERSION >= (4, 0, 0):
+        render_pass.rect.foreach_set(flat.reshape(-1))
+    else:
+        render_pass.rect.foreach_set(flat.reshape(-1, render_pass.channels))
+
+
+def draw_pixels(pixels, width, height):
+    """Draw scene-linear float32[H, W, 4] over the viewport's region of width x height pixels."""
+    import gpu
+    from gpu_extras.presets import draw_texture_2d
+
+    pixels = np.ascontiguousarray(pixels, np.float32)
+    rows, columns = pixels.shape[:2]
+    data = gpu.types.Buffer('FLOAT', pixels.shape, pixels)
+    texture = gpu.types.GPUTexture((columns, rows), format='RGBA32F', data=data)
+    gpu.state.blend_set('ALPHA_PREMULT')
+    draw_texture_2d(texture, (0, 0), width, height)
+    gpu.state.blend_set('NONE')
+
+
+def set_file_format(settings, file_format):
+    """Choose 'PNG' or 'OPEN_EXR_MULTILAYER' in an ImageFormatSettings."""
+    if hasattr(settings, 'media_type'):
+        layered = file_format == 'OPEN_EXR_MULTILAYER'
+        settings.media_type = 'MULTI_LAYER_IMAGE' if layered else 'IMAGE'
+    settings.file_format = file_format
+    if hasattr(settings, 'use_exr_interleave'):
+        # One part with all channels, as before 5.0: many readers look at the first part only.
+        settings.use_exr_interleave = True

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Final renders: one view layer of one frame, from sync to the filled passes."""
+
+import time
+
+import bpy
+
+from . import compat, passes, requests, session
+
+# Showing a picture that is still being rendered costs up to a third of a second.
+_PREVIEW_INTERVAL = 1.0
+
+
+class _LayerResult:
+    """The render result of one view layer, begun and ended exactly once."""
+
+    def __init__(self, engine, layer_name, size):
+        self._engine = engine
+        self._result = engine.begin_result(0, 0, *size, layer=layer_name)
+        self.pass_names = [p.name for p in self._passes() if p.name in passes.BY_NAME]
+
+    def _passes(self):
+        return self._result.layers[0].passes if self._result.layers else ()
+
+    def fill(self, job, names):
+        """Copy the job's last complete sample to these passes."""
+        for target in self._passes():
+            if target.name in names:
+                compat.write_pass(target, job.read(target.name))
+
+    def show(self, job):
+        """Show the combined picture so far."""
+        self.fill(job, ('Combined',))
+        self._engine.update_result(self._result)
+
+    def end(self, cancel=False):
+        """Hand the result to Blender."""
+        self._engine.end_result(self._result, cancel=cancel)
+
+
+def render(engine, depsgraph):
+    """Render one view layer for `engine`; raises what the sync and the native module raise."""
+    started = time.perf_counter()
+    warnings = []
+
+    def warn(sentence):
+        if sentence not in warnings:
+            warnings.append(sentence)
+
+    layer = depsgraph.view_layer
+    request = requests.final(depsgraph, (), warn)
+    size = (request['width'], request['height'])
+    session.cancel_previews()
+    with session.exclusive(wait=True):
+        _tell(engine, 0.0, 'Synchronising the scene')
+        mirror = session.mirror()
+        report = session.final_sync.sync(mirror, depsgraph, incremental=False)
+        for sentence in report.warnings:
+            warn(sentence)
+
+        result = _LayerResult(engine, layer.name, size)
+        finished = False
+        try:
+            request['passes'] = result.pass_names or ['Combined']
+            request['live'] = not bpy.app.background
+            job = mirror.engine.render(request)
+            cancelled = _follow(engine, job, result)
+            finished = not cancelled or job.samples_ready() > 0
+            if finished:
+                result.fill(job, result.pass_names)
+        finally:
+            result.end(cancel=not finished)
+        stats = dict(job.stats())
+
+    stats['sync_ms'] = report.total_ms
+    stats['total_ms'] = (time.perf_counter() - started) * 1e3
+    stats['warnings'] = list(dict.fromkeys(warnings + list(stats.get('warnings', ()))))
+    for sentence in stats['warnings']:
+        engine.report({'WARNING'}, sentence)
+    session.add_stats(stats)
+    megabytes = stats.get('memory_bytes', 0) / 2**20
+    engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
+
+
+def _follow(engine, job, result):
+    """Wait for a job, telling Blender about it; return whether the artist cancelled it."""
+    cancelled = False
+    shown = time.monotonic()
+    while not job.wait(0.05):
+        _tell(engine, job.progress(), job.status())
+        if engine.test_break() and not cancelled:
+            cancelled = True
+            job.cancel()
+        now = time.monotonic()
+        if not bpy.app.background and job.samples_ready() and now - shown > _PREVIEW_INTERVAL:
+            result.show(job)
+            # However long showing took, rendering gets at least as much of the processor.
+            shown = time.monotonic()
+    job.finish()
+    _tell(engine, job.progress(), job.status())
+    return cancelled
+
+
+def _tell(engine, fraction, text):
+    engine.update_progress(fraction)
+    # Without a window Blender prints a line for each of these.
+    if not bpy.app.background:
+        engine.update_stats('Panoptes', text)
+    if session.progress_listener is not None:
+        session.progress_listener(fraction, text)

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shader nodes of surfaces: closures with weights.
+
+`order_shaders` brings the shader nodes under an output into an order in which every node comes
+after all that use it, so that each closure is written once with the sum of its weights, however
+many mixes lead to it.
+"""
+
+from .. import compat
+from .compiler import NodeUse
+from .scope import resolve
+from .values import Value, convert, socket_kind
+
+CLOSURES = {}
+
+
+def closure(*types):
+    """Register a function (node use, weight expression) that writes these nodes' closures."""
+
+    def register(function):
+        for node_type in types:
+            CLOSURES[node_type] = function
+        return function
+
+    return register
+
+
+def _shader_inputs(node):
+    return [socket for socket in node.inputs if socket_kind(socket) == 'shader']
+
+
+def mix_factor(use):
+    """Return the `Value` of a Mix Shader's factor, limited to 0..1."""
+    constant = use.constant('Fac')
+    if constant is not None and constant in (0.0, 1.0):
+        return Value('float', f'{constant:.1f}', constant)
+    value = convert(use.value('Fac'), 'float')
+    limited = None if value.constant is None else min(max(value.constant, 0.0), 1.0)
+    return use.declare('float', f'clamp({value.code}, 0.0, 1.0)')._replace(constant=limited)
+
+
+def _children(compiler, use):
+    """Return [(source, role)] of a mix or add node: role 'first', 'second' or 'same'."""
+    sockets = _shader_inputs(use.node)
+    if use.node.type == 'ADD_SHADER':
+        return [(resolve(use.scope, socket), 'same') for socket in sockets]
+    if use.node.type != 'MIX_SHADER':
+        return []
+    # A side that a constant factor switches off is not looked at: it costs nothing.
+    constant = use.constant('Fac')
+    roles = list(zip(sockets, ('first', 'second')))
+    if constant is not None and constant <= 0.0:
+        roles = roles[:1]
+    elif constant is not None and constant >= 1.0:
+        roles = roles[1:]
+    return [(resolve(use.scope, socket), role) for socket, role in roles]
+
+
+def order_shaders(compiler, root):
+    """Return [(use, source, children)] under `root`, users before what they use.
+
+    Links that would close a loop are dropped. `children` are [(key, role)] and `key` is how a later
+    entry's use is named: (path, node pointer).
+    """
+    done, open_nodes, order = {}, set(), []
+
+    def visit(source):
+        if source.node is None:
+            return None
+        key = (source.scope.path, source.node.as_pointer())
+        if key in open_nodes:
+            return None
+        if key in done:
+            return key
+        open_nodes.add(key)
+        use = NodeUse(compiler, source.node, source.scope)
+        children = []
+        for child, role in _children(compiler, use):
+            child_key = visit(child)
+            if child_key is not None:
+                children.append((child_key, role))
+        open_nodes.discard(key)
+        done[key] = True
+        order.append((key, use, source, children))
+        return key
+
+    visit(root)
+    order.reverse()
+    return order
+
+
+def write_surface(compiler, root):
+    """Write the closures of a material's surface, whose `Source` is `root`."""
+    weights = {}
+    order = order_shaders(compiler, root)
+    if order:
+        weights[order[0][0]] = ['vec3(1.0)']
+    for key, use, source, children in order:
+        weight = _sum(compiler, weights.get(key, ()))
+        if weight is None:
+            continue
+        if children or use.node.type in ('MIX_SHADER', 'ADD_SHADER'):
+            factor = mix_factor(use) if any(role != 'same' for _, role in children) else None
+            for child, role in children:
+                weights.setdefault(child, []).append(_scaled(weight, factor, role))
+        else:
+            _write_closure(compiler, use, source, weight)
+
+
+def _sum(compiler, parts):
+    if not parts:
+        return None
+    if len(parts) == 1 and parts[0] == 'vec3(1.0)':
+        return parts[0]
+    return compiler.declare('color', ' + '.join(parts)).code
+
+
+def _scaled(weight, factor, role):
+    if role == 'same' or factor.constant == (0.0 if role == 'first' else 1.0):
+        return weight
+    return f'{weight} * {factor.code}' if role == 'second' else f'{weight} * (1.0 - {factor.code})'
+
+
+def _write_closure(compiler, use, source, weight):
+    if socket_kind(source.socket) != 'shader':
+        # A colour linked straight into a shader socket shines with that colour.
+        value = convert(compiler.source_value(source._replace(kinds=('color',))), 'color')
+        _emit(compiler, weight, value.code)
+        return
+    writer = CLOSURES.get(use.node.type)
+    if writer is not None:
+        writer(use, weight)
+        return
+    substitute = _SUBSTITUTES.get(use.node.type)
+    if substitute is None:
+        compiler.warn(use.node, 'black')
+        return
+    name, writer = substitute
+    compiler.warn(use.node, f'a {name}')
+    writer(use, weight)
+
+
+def _emit(compiler, weight, radiance):
+    compiler.facts['emission'] = True
+    compiler.statement(f'closure_emission(surface, {weight}, {radiance});')
+
+
+def _is_black(use, color, strength):
+    """Tell whether an emission is known to be zero: by its colour or by its strength."""
+    if use.constant(strength) == 0.0:
+        return True
+    constant = use.constant(color)
+    return constant is not None and not any(constant)
+
+
+def _color(use, name='Color'):
+    return use.get(name, 'color') if use.has_input(name) else 'vec3(0.8)'
+
+
+def _float(use, name, otherwise):
+    return use.get(name, 'float') if use.has_input(name) else otherwise
+
+
+def _roughness(use):
+    """Roughness of a closure; the distribution 'Sharp' of old files means none."""
+    if getattr(use.node, 'distribution', '') == 'SHARP':
+        return '0.0'
+    return _float(use, 'Roughness', '0.0')
+
+
+@closure('BSDF_DIFFUSE')
+def diffuse(use, weight):
+    """Diffuse BSDF."""
+    use.compiler.statement(
+        f'closure_diffuse(surface, {weight}, {_color(use)}, {_float(use, "Roughness", "0.0")}, '
+        f'{use.normal()});')
+
+
+@closure('BSDF_GLOSSY')
+def glossy(use, weight):
+    """Glossy BSDF."""
+    use.compiler.facts['glossy'] = True
+    use.compiler.statement(
+        f'closure_glossy(surface, {weight}, {_color(use)}, {_roughness(use)}, {use.normal()});')
+
+
+def _refractive(use, weight, function):
+    use.compiler.facts['transmission'] = True
+    use.compiler.statement(
+        f'{function}(surface, {weight}, {_color(use)}, {_roughness(use)}, '
+        f'{_float(use, "IOR", "1.5")}, {use.normal()});')
+
+
+@closure('BSDF_GLASS')
+def glass(use, weight):
+    """Glass BSDF."""
+    use.compiler.facts['glossy'] = True
+    _refractive(use, weight, 'closure_glass')
+
+
+@closure('BSDF_REFRACTION')
+def refraction(use, weight):
+    """Refraction BSDF."""
+    _refractive(use, weight, 'closure_refraction')
+
+
+@closure('BSDF_TRANSPARENT')
+def transparent(use, weight):
+    """Transparent BSDF."""
+    use.compiler.facts['alpha'] = True
+    use.compiler.statement(f'closure_transparent(surface, {weight}, {_color(use)});')
+
+
+@closure('EMISSION', 'BACKGROUND')
+def emission(use, weight):
+    """Emission node (a Background linked to a surface shines as well)."""
+    if _is_black(use, 'Color', 'Strength'):
+        return
+    _emit(use.compiler, weight, f'{use.get("Color", "color")} * {use.get("Strength", "float")}')
+
+
+@closure('MIX_SHADER', 'ADD_SHADER')
+def empty_mix(use, weight):
+    """A mix without any shader linked: black."""
+
+
+def _metallic(use, weight):
+    """Metallic BSDF of 4.3 and later, by its base colour."""
+    use.compiler.facts['glossy'] = True
+    use.compiler.statement(
+        f'closure_glossy(surface, {weight}, {_color(use, "Base Color")}, {_roughness(use)}, '
+        f'{use.normal()});')
+
+
+def _eevee_specular(use, weight):
+    """EEVEE's Specular BSDF: a diffuse layer."""
+    use.compiler.statement(
+        f'closure_diffuse(surface, {weight}, {_color(use, "Base Color")}, 0.0, {use.normal()});')
+
+
+_SUBSTITUTES = {
+    'SUBSURFACE_SCATTERING': ('Diffuse BSDF', diffuse),
+    'BSDF_TRANSLUCENT': ('Diffuse BSDF', diffuse),
+    'BSDF_VELVET': ('Diffuse BSDF', diffuse),
+    'BSDF_SHEEN': ('Diffuse BSDF', diffuse),
+    'BSDF_TOON': ('Diffuse BSDF', diffuse),
+    'BSDF_HAIR': ('Diffuse BSDF', diffuse),
+    'BSDF_HAIR_PRINCIPLED': ('Diffuse BSDF', diffuse),
+    'BSDF_ANISOTROPIC': ('Glossy BSDF', glossy),
+    'BSDF_METALLIC': ('Glossy BSDF', _metallic),
+    'EEVEE_SPECULAR': ('Diffuse BSDF', _eevee_specular),
+    'BSDF_RAY_PORTAL': ('Transparent BSDF', transparent),
+}
+
+# Inputs of the Principled BSDF that no closure reads yet, by the weight that switches each on.
+_PRINCIPLED_UNREAD = ('Subsurface', 'Subsurface Weight', 'Anisotropic', 'Thin Film Thickness')
+
+
+@closure('BSDF_PRINCIPLED')
+def principled(use, weight):
+    """Principled BSDF, both generations of its sockets.
+
+    A term whose weight is an unlinked 0 (emission, transmission, coat, sheen; alpha at 1) is left
+    at its default, so that the shader compiler removes it.
+    """
+    compiler = use.compiler
+    names = compat.PRINCIPLED_SOCKETS
+    name = f'p{compiler.take_number()}'
+    lines = [f'Principled {name} = principled_defaults(hit);']
+
+    def assign(field, expression):
+        lines.append(f'{name}.{field} = {expression};')
+
+    assign('base_color', use.get('Base Color', 'color'))
+    for field in ('metallic', 'roughness', 'specular', 'specular_tint', 'ior'):
+        assign(field, use.get(names[field], 'float'))
+    for field in ('transmission', 'clearcoat', 'sheen'):
+        if use.constant(names[field]) != 0.0:
+            assign(field, use.get(names[field], 'float'))
+            if field == 'clearcoat':
+                roughness = names['clearcoat_roughness']
+                assign('clearcoat_roughness', use.get(roughness, 'float'))
+            if field == 'transmission':
+                compiler.facts['transmission'] = True
+    if use.constant('Alpha') != 1.0:
+        compiler.facts['alpha'] = True
+        assign('alpha', use.get('Alpha', 'float'))
+    if not _is_black(use, names['emission'], 'Emission Strength'):
+        compiler.facts['emission'] = True
+        color, strength = use.get(names['emission'], 'color'), use.get('Emission Strength', 'float')
+        assign('emission', f'{color} * {strength}')
+    if use.is_linked('Normal'):
+        assign('normal', use.get('Normal', 'vector'))
+    if any(use.constant(names[field]) != 0.0 for field in ('specular', 'metallic', 'clearcoat')):
+        compiler.facts['glossy'] = True
+    if compiler.facts['transmission']:
+        compiler.facts['glossy'] = True
+
+    for unread in _PRINCIPLED_UNREAD:
+        if use.has_input(unread) and use.constant(unread) != 0.0:
+            compiler.warn_once(
+                ('principled', unread),
+                f'{compiler.owner}: input {unread} of node {use.node.bl_label} is not supported '
+                'yet; it is left out.')
+    lines.append(f'closure_principled_v{compat.PRINCIPLED_GENERATION}(surface, {weight}, {name});')
+    compiler.lines.extend(lines)

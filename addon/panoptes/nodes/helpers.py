@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""GLSL functions for nodes whose arithmetic is more than an expression.
+
+Each is guarded by a macro, so that any number of generated shaders may meet in one program. They
+follow what the nodes do in Cycles, including its answers where the mathematics has none (a division
+by zero gives 0).
+"""
+
+_FUNCTIONS = {}
+
+
+def _add(name, source, *needs):
+    _FUNCTIONS[name] = (source.strip(), needs)
+
+
+def require(chosen, name):
+    """Append `name` and what it calls to the list `chosen`, callees first, each once."""
+    if name in chosen:
+        return
+    for needed in _FUNCTIONS[name][1]:
+        require(chosen, needed)
+    chosen.append(name)
+
+
+def source(names):
+    """Return the guarded GLSL of these helpers."""
+    parts = []
+    for name in names:
+        guard = f'PANOPTES_{name.upper()}'
+        parts.append(f'#ifndef {guard}\n#define {guard}\n{_FUNCTIONS[name][0]}\n#endif\n')
+    return ''.join(parts)
+
+
+_add('node_divide', '''
+float node_divide(float a, float b) { return b != 0.0 ? a / b : 0.0; }
+vec3 node_divide(vec3 a, vec3 b)
+{
+    return vec3(node_divide(a.x, b.x), node_divide(a.y, b.y), node_divide(a.z, b.z));
+}
+''')
+_add('node_power', '''
+float node_power(float a, float b)
+{
+    if (b == 0.0)
+        return 1.0;
+    if (a == 0.0)
+        return 0.0;
+    float whole = floor(b);
+    if (a > 0.0)
+        return pow(a, b);
+    if (whole != b)
+        return 0.0;
+    float magnitude = pow(-a, b);
+    return mod(whole, 2.0) == 0.0 ? magnitude : -magnitude;
+}
+''')
+_add('node_logarithm', '''
+float node_logarithm(float a, float base)
+{
+    if (a <= 0.0 || base <= 0.0)
+        return 0.0;
+    float scale = log(base);
+    return scale != 0.0 ? log(a) / scale : 0.0;
+}
+''')
+_add('node_modulo', '''
+float node_modulo(float a, float b) { return b != 0.0 ? a - b * trunc(a / b) : 0.0; }
+''')
+_add('node_floored_modulo', '''
+float node_floored_modulo(float a, float b) { return b != 0.0 ? a - b * floor(a / b) : 0.0; }
+''')
+_add('node_wrap', '''
+float node_wrap(float a, float high, float low)
+{
+    float range = high - low;
+    return range != 0.0 ? a - range * floor((a - low) / range) : low;
+}
+''')
+_add('node_ping_pong', '''
+float node_ping_pong(float a, float scale)
+{
+    if (scale == 0.0)
+        return 0.0;
+    return abs(fract((a - scale) / (scale * 2.0)) * scale * 2.0 - scale);
+}
+''')
+_add('node_smooth_minimum', '''
+float node_smooth_minimum(float a, float b, float width)
+{
+    if (width == 0.0)
+        return min(a, b);
+    float h = max(width - abs(a - b), 0.0) / width;
+    return min(a, b) - h * h * h * width * (1.0 / 6.0);
+}
+''')
+_add('node_safe_normalize', '''
+vec3 node_safe_normalize(vec3 v)
+{
+    float size = length(v);
+    return size != 0.0 ? v / size : vec3(0.0);
+}
+''')
+_add('node_project', '''
+vec3 node_project(vec3 a, vec3 b)
+{
+    float size = dot(b, b);
+    return size != 0.0 ? dot(a, b) / size * b : vec3(0.0);
+}
+''')
+_add('node_euler', '''
+mat3 node_euler(vec3 angle)
+{
+    vec3 c = cos(angle);
+    vec3 s = sin(angle);
+    mat3 x = mat3(1.0, 0.0, 0.0, 0.0, c.x, s.x, 0.0, -s.x, c.x);
+    mat3 y = mat3(c.y, 0.0, -s.y, 0.0, 1.0, 0.0, s.y, 0.0, c.y);
+    mat3 z = mat3(c.z, s.z, 0.0, -s.z, c.z, 0.0, 0.0, 0.0, 1.0);
+    return z * y * x;
+}
+''')
+_add('node_checker', '''
+float node_checker(vec3 p)
+{
+    // A plane that lies exactly on the cell borders must not flicker between the two colours.
+    ivec3 cell = abs(ivec3(floor((p + 0.000001) * 0.999999)));
+    ivec3 odd = cell & 1;
+    return ((odd.x == odd.y) == (odd.z != 0)) ? 1.0 : 0.0;
+}
+''')
+_add('node_table', '''
+vec4 node_table(int first, int last, float position, bool interpolate)
+{
+    float place = clamp(position, 0.0, 1.0) * float(last);
+    int low = clamp(int(place), 0, last);
+    vec4 value = param(first + low);
+    if (!interpolate)
+        return value;
+    return mix(value, param(first + min(low + 1, last)), place - float(low));
+}
+''')
+_add('node_rgb_to_hsv', '''
+vec3 node_rgb_to_hsv(vec3 c)
+{
+    float high = max(c.r, max(c.g, c.b));
+    float range = high - min(c.r, min(c.g, c.b));
+    if (range == 0.0 || high == 0.0)
+        return vec3(0.0, 0.0, high);
+    vec3 distance = (vec3(high) - c) / range;
+    float hue;
+    if (c.r == high)
+        hue = distance.b - distance.g;
+    else if (c.g == high)
+        hue = 2.0 + distance.r - distance.b;
+    else
+        hue = 4.0 + distance.g - distance.r;
+    return vec3(fract(hue / 6.0), range / high, high);
+}
+''')
+_add('node_hue', '''
+vec3 node_hue(float hue)
+{
+    return clamp(abs(fract(vec3(hue) + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+}
+''')
+_add('node_hsv_to_rgb', '''
+vec3 node_hsv_to_rgb(vec3 hsv) { return hsv.z * mix(vec3(1.0), node_hue(hsv.x), hsv.y); }
+''', 'node_hue')
+_add('node_rgb_to_hsl', '''
+vec3 node_rgb_to_hsl(vec3 c)
+{
+    float high = max(c.r, max(c.g, c.b));
+    float low = min(c.r, min(c.g, c.b));
+    float lightness = min(1.0, (high + low) * 0.5);
+    if (high == low)
+        return vec3(0.0, 0.0, lightness);
+    float range = high - low;
+    float saturation = lightness > 0.5 ? range / (2.0 - high - low) : range / (high + low);
+    return vec3(node_rgb_to_hsv(c).x, saturation, lightness);
+}
+''', 'node_rgb_to_hsv')
+_add('node_hsl_to_rgb', '''
+vec3 node_hsl_to_rgb(vec3 hsl)
+{
+    float chroma = (1.0 - abs(2.0 * hsl.z - 1.0)) * hsl.y;
+    return (node_hue(hsl.x) - 0.5) * chroma + hsl.z;
+}
+''', 'node_hue')
+_add('node_hue_saturation', '''
+vec3 node_hue_saturation(vec3 color, float hue, float saturation, float value, float factor)
+{
+    vec3 hsv = node_rgb_to_hsv(color);
+    hsv.x = fract(hsv.x + hue + 0.5);
+    hsv.y = clamp(hsv.y * saturation, 0.0, 1.0);
+    hsv.z *= value;
+    return max(mix(color, node_hsv_to_rgb(hsv), factor), vec3(0.0));
+}
+''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')
+_add('node_gamma', '''
+vec3 node_gamma(vec3 color, float gamma)
+{
+    if (gamma == 0.0)
+        return vec3(1.0);
+    return mix(color, pow(max(color, vec3(1e-30)), vec3(gamma)), greaterThan(color, vec3(0.0)));
+}
+''')
+_add('node_fresnel', '''
+float node_fresnel(float cosine, float ior)
+{
+    float c = abs(cosine);
+    float square = ior * ior - 1.0 + c * c;
+    if (square <= 0.0)
+        return 1.0;
+    float g = sqrt(square);
+    float a = (g - c) / (g + c);
+    float b = ((g + c) * c - 1.0) / ((g - c) * c + 1.0);
+    return 0.5 * a * a * (1.0 + b * b);
+}
+''')
+_add('node_object_normal', '''
+vec3 node_object_normal(Hit hit)
+{
+    return normalize(transpose(fetch_transform(hit.instance, vec3(0.0)).linear) * hit.normal);
+}
+''')
+_add('node_equirectangular', '''
+vec2 node_equirectangular(vec3 direction)
+{
+    float u = -atan(direction.y, direction.x) * 0.15915494 + 0.5;
+    return vec2(u, atan(direction.z, length(direction.xy)) * 0.31830989 + 0.5);
+}
+''')
+_add('node_sphere_map', '''
+vec2 node_sphere_map(vec3 p)
+{
+    float size = length(p);
+    if (size == 0.0)
+        return vec2(0.0);
+    float u = (p.x == 0.0 && p.y == 0.0) ? 0.0 : (1.0 - atan(p.x, p.y) / 3.14159265) * 0.5;
+    return vec2(u, 1.0 - acos(clamp(p.z / size, -1.0, 1.0)) / 3.14159265);
+}
+''')
+_add('node_tube_map', '''
+vec2 node_tube_map(vec3 p)
+{
+    float u = (p.x == 0.0 && p.y == 0.0) ? 0.0 : (1.0 - atan(p.x, p.y) / 3.14159265) * 0.5;
+    return vec2(u, (p.z + 1.0) * 0.5);
+}
+''')
+
+# Blend modes of the Mix nodes: factor first, then the two colours.
+for _name, _body in {
+    'burn': '''
+    vec3 mixed = vec3(1.0 - f) + f * b;
+    vec3 result = clamp(1.0 - (1.0 - a) / mixed, 0.0, 1.0);
+    return mix(result, vec3(0.0), lessThanEqual(mixed, vec3(0.0)));
+''',
+    'dodge': '''
+    vec3 rest = 1.0 - f * b;
+    vec3 result = min(a / rest, vec3(1.0));
+    result = mix(result, vec3(1.0), lessThanEqual(rest, vec3(0.0)));
+    return mix(result, vec3(0.0), equal(a, vec3(0.0)));
+''',
+    'overlay': '''
+    vec3 dark = a * (1.0 - f + 2.0 * f * b);
+    vec3 light = 1.0 - (1.0 - f + 2.0 * f * (1.0 - b)) * (1.0 - a);
+    return mix(light, dark, lessThan(a, vec3(0.5)));
+''',
+    'soft_light': '''
+    vec3 screen = 1.0 - (1.0 - b) * (1.0 - a);
+    return (1.0 - f) * a + f * ((1.0 - a) * b * a + a * screen);
+''',
+    'divide': '''
+    vec3 result = (1.0 - f) * a + f * a / b;
+    return mix(result, a, equal(b, vec3(0.0)));
+''',
+}.items():
+    _add(f'node_blend_{_name}', f'vec3 node_blend_{_name}(float f, vec3 a, vec3 b)\n{{{_body}}}')
+
+for _name, _change in {
+    'hue': 'hsv.x = other.x;',
+    'color': 'hsv.xy = other.xy;',
+}.items():
+    _add(f'node_blend_{_name}', f'''
+vec3 node_blend_{_name}(float f, vec3 a, vec3 b)
+{{
+    vec3 other = node_rgb_to_hsv(b);
+    if (other.y == 0.0)
+        return a;
+    vec3 hsv = node_rgb_to_hsv(a);
+    {_change}
+    return mix(a, node_hsv_to_rgb(hsv), f);
+}}
+''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')
+_add('node_blend_saturation', '''
+vec3 node_blend_saturation(float f, vec3 a, vec3 b)
+{
+    vec3 hsv = node_rgb_to_hsv(a);
+    if (hsv.y == 0.0)
+        return a;
+    hsv.y = mix(hsv.y, node_rgb_to_hsv(b).y, f);
+    return node_hsv_to_rgb(hsv);
+}
+''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')
+_add('node_blend_value', '''
+vec3 node_blend_value(float f, vec3 a, vec3 b)
+{
+    vec3 hsv = node_rgb_to_hsv(a);
+    hsv.z = mix(hsv.z, node_rgb_to_hsv(b).z, f);
+    return node_hsv_to_rgb(hsv);
+}
+''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')

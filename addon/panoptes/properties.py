@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`scene.panoptes`: every option of a render, grouped by technique."""
+
+import bpy
+from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
+                       StringProperty)
+
+
+class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
+    """Options of the Real-time method."""
+
+    shadow_resolution: IntProperty(
+        name='Shadow Resolution',
+        description='Pixels along one side of a shadow map. More gives sharper shadows and takes '
+                    'longer',
+        default=2048, min=64, max=8192, soft_min=256, subtype='PIXEL')
+    soft_shadows: BoolProperty(
+        name='Soft Shadows',
+        description='Let each sample use another point of lamps that have an extent. Without it every '
+                    'lamp is a point',
+        default=True)
+
+
+class PanoptesSceneSettings(bpy.types.PropertyGroup):
+    """Options of a scene's renders."""
+
+    method: EnumProperty(
+        name='Method',
+        description='How light is computed',
+        items=(
+            ('auto', 'Automatic', 'Choose the method that suits the scene'),
+            ('realtime', 'Real-time', 'Rasterised light with shadow maps: for navigating and '
+                                      'animation previews'),
+            ('fragment', 'Fragment Tracing', 'Path tracing over rasterised layers. Does not work '
+                                             'yet: Real-time is used'),
+            ('primitive', 'Primitive Tracing', 'Path tracing with exact intersections. Does not '
+                                               'work yet: Real-time is used'),
+        ),
+        default='auto')
+    samples: IntProperty(
+        name='Samples', description='Samples a pixel in final renders', default=16, min=1,
+        max=1 << 20, soft_max=4096)
+    first_sample: IntProperty(
+        name='First Sample',
+        description='Number of the first sample, for renders that are split by samples', default=0,
+        min=0, max=1 << 24)
+    viewport_samples: IntProperty(
+        name='Viewport Samples', description='Samples a pixel in the 3D View', default=16, min=1,
+        max=1 << 20, soft_max=1024)
+    seed: IntProperty(
+        name='Seed', description='Another seed gives another pattern of noise', default=0, min=0)
+    bounces: IntProperty(
+        name='Bounces', description='How often light is reflected on its way. Used by indirect '
+                                    'light', default=8, min=0, max=1024)
+    noise_threshold: FloatProperty(
+        name='Noise Threshold',
+        description='Stop when the estimated relative error falls below this. 0 renders all samples',
+        default=0.0, min=0.0, max=1.0, precision=4)
+    time_budget: FloatProperty(
+        name='Time Budget',
+        description='Stop after the sample that exceeds this many seconds. 0 renders all samples',
+        default=0.0, min=0.0, subtype='TIME', unit='TIME_ABSOLUTE')
+    force_all_effects: BoolProperty(
+        name='Force All Effects',
+        description='Run every effect, also those that the scene cannot show. The picture stays the '
+                    'same, the time does not',
+        default=False)
+    realtime: PointerProperty(type=PanoptesRealtimeSettings)
+    last_stats: StringProperty(
+        name='Last Statistics', description='Statistics of the last final render, as JSON',
+        options={'HIDDEN', 'SKIP_SAVE'})
+
+
+_CLASSES = (PanoptesRealtimeSettings, PanoptesSceneSettings)
+
+
+def register():
+    """Add `panoptes` to all scenes."""
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.panoptes = PointerProperty(type=PanoptesSceneSettings)
+
+
+def unregister():
+    """Remove `panoptes` from all scenes."""
+    del bpy.types.Scene.panoptes
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

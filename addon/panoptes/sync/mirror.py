@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the native engine holds at the moment, and the least that brings it up to date.
+
+The engine is shared by viewports and final renders, each of which wants its own version of the
+scene. They all write through one `Mirror`, which remembers what was sent and sends differences only.
+"""
+
+import zlib
+
+import numpy as np
+
+
+def fingerprint(*arrays):
+    """Return a hashable summary of arrays' shapes and bits."""
+    return tuple((a.shape, zlib.crc32(np.ascontiguousarray(a).reshape(-1).view(np.uint8)))
+                 for a in arrays)
+
+
+class Mirror:
+    """The native scene as last written. All ids are positive and belong to keys chosen by callers.
+
+    `owner` is whoever wrote last: a sync that finds another owner cannot rely on what it remembers
+    of its own last pass.
+    """
+
+    def __init__(self, engine):
+        self.engine = engine
+        self.owner = None
+        self._next_id = 1
+        self._ids = {}
+        self._meshes = {}
+        self._materials = {}
+        self._images = {}
+        self._lights = None
+        self._world = None
+        self._instances = None
+
+    def id_of(self, kind, key):
+        """Return the id of `key` among 'mesh', 'material' or 'image' things."""
+        full = (kind, key)
+        if full not in self._ids:
+            self._ids[full] = self._next_id
+            self._next_id += 1
+        return self._ids[full]
+
+    # Meshes
+
+    def has_mesh(self, mesh_id):
+        """Tell whether the engine holds this mesh."""
+        return mesh_id in self._meshes
+
+    def put_mesh(self, mesh_id, mesh):
+        """Send a `MeshArrays` unless the engine holds the same bits; return whether it was sent."""
+        attributes = sorted(mesh.attributes.items())
+        mark = (mesh.default_uv, mesh.default_color, tuple(name for name, _ in attributes),
+                fingerprint(mesh.positions, mesh.triangle_vertices, mesh.triangle_loops,
+                            mesh.triangle_slots, mesh.loop_normals, *(a for _, a in attributes)))
+        if self._meshes.get(mesh_id) == mark:
+            return False
+        self._meshes.pop(mesh_id, None)
+        self.engine.set_mesh(mesh_id, mesh.name, mesh.positions, mesh.triangle_vertices,
+                             mesh.triangle_loops, mesh.triangle_slots, mesh.loop_normals,
+                             mesh.attributes, mesh.default_uv, mesh.default_color)
+        self._meshes[mesh_id] = mark
+        return True
+
+    # Materials and the world
+
+    def put_material(self, material_id, name, shader, textures):
+        """Send a `CompiledShader` whose textures are [(image id, interpolation, extension)].
+
+        Where only values differ, only the block of values is sent.
+        """
+        structure = (shader.code, tuple(textures), _frozen(shader.facts), shader.params.shape)
+        values = shader.params.tobytes()
+        held = self._materials.get(material_id)
+        if held is None or held[0] != structure:
+            self._materials.pop(material_id, None)
+            self.engine.set_material(material_id, name, shader.code, shader.params, textures,
+                                     shader.facts)
+        elif held[1] != values:
+            self.engine.set_material_params(material_id, shader.params)
+        self._materials[material_id] = (structure, values)
+
+    def put_world(self, shader, textures):
+        """Send the world's `CompiledShader`."""
+        mark = (shader.code, tuple(textures), shader.params.tobytes(), shader.constant)
+        if mark != self._world:
+            self._world = None
+            self.engine.set_world(shader.code, shader.params, textures, shader.constant)
+            self._world = mark
+
+    # Images
+
+    def image_is_current(self, image_id, mark):
+        """Tell whether the engine holds this image in the state that `mark` names."""
+        return image_id in self._images and self._images[image_id] == mark
+
+    def note_image(self, image_id, mark):
+        """Remember that an image was sent in the state that `mark` names."""
+        self._images[image_id] = mark
+
+    # Lights and instances
+
+    def put_lights(self, lights):
+        """Send the list of light dictionaries if it differs from what the engine holds."""
+        mark = [tuple((k, v.tobytes() if isinstance(v, np.ndarray) else v) for k, v in light.items())
+                for light in lights]
+        if mark != self._lights:
+            self._lights = None
+            self.engine.set_lights(lights)
+            self._lights = mark
+
+    def put_instances(self, mesh_ids, matrices, offsets, table):
+        """Send instances: all of them if the list changed, else only matrices that did."""
+        held = self._instances
+        same_list = (held is not None and np.array_equal(held[0], mesh_ids)
+                     and np.array_equal(held[2], offsets) and np.array_equal(held[3], table))
+        self._instances = None
+        if not same_list:
+            self.engine.set_instances(mesh_ids, matrices, offsets, table)
+        else:
+            moved = np.flatnonzero((held[1] != matrices).any(axis=(1, 2))).astype(np.int32)
+            if len(moved):
+                self.engine.set_instance_matrices(moved, np.ascontiguousarray(matrices[moved]))
+        self._instances = (mesh_ids, matrices, offsets, table)
+
+    def keep_only(self, meshes, materials, images):
+        """Remove whatever is not in these sets of ids."""
+        for held, wanted, remove in ((self._meshes, meshes, self.engine.remove_mesh),
+                                     (self._materials, materials, self.engine.remove_material),
+                                     (self._images, images, self.engine.remove_image)):
+            for unused in [i for i in held if i not in wanted]:
+                remove(unused)
+                del held[unused]
+        gone = set(self._ids.values()) - meshes - materials - images
+        self._ids = {key: i for key, i in self._ids.items() if i not in gone}
+
+
+def _frozen(facts):
+    return tuple(sorted((k, tuple(v) if isinstance(v, list) else v) for k, v in facts.items()))
