@@ -85,10 +85,8 @@ class PANOPTES_PT_sampling(_RenderPanel, bpy.types.Panel):
         """Draw the panel."""
         settings = context.scene.panoptes
         column = self._column()
-        column.prop(settings, 'method')
         column.prop(settings, 'samples', text='Render Samples')
         column.prop(settings, 'viewport_samples')
-        column.prop(settings, 'bounces')
 
 
 class PANOPTES_PT_sampling_limits(_RenderPanel, bpy.types.Panel):

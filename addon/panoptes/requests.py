@@ -17,6 +17,18 @@ def method(settings, warn):
     return 'realtime'
 
 
+def _inverted(matrix):
+    """Return the inverse of a matrix in double precision, or the matrix where there is none.
+
+    Blender's own inverse is in single precision: a camera at 1000 km would be off by centimetres.
+    """
+    matrix = np.array(matrix, np.float64)
+    try:
+        return np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        return matrix
+
+
 def _settings(scene):
     settings = scene.panoptes
     found = {
@@ -110,7 +122,7 @@ def final(depsgraph, passes, warn):
         depsgraph, x=max(width, 1), y=max(height, 1), scale_x=render.pixel_aspect_x,
         scale_y=render.pixel_aspect_y))
     # A camera's scale never changes the picture.
-    view = camera.matrix_world.normalized().inverted_safe()
+    view = _inverted(camera.matrix_world.normalized())
     settings = scene.panoptes
     samples = (settings.first_sample, settings.first_sample + settings.samples)
     return build(scene, (region[2] - region[0], region[3] - region[1]), samples, view,

@@ -178,6 +178,11 @@ def _show_rendered():
             for space in area.spaces:
                 if space.type == 'VIEW_3D':
                     space.shading.type = 'RENDERED'
+                    if bpy.context.scene.camera is not None:
+                        # What the file's author framed says more than the default view.
+                        space.region_3d.view_perspective = 'CAMERA'
+                elif space.type == 'PROPERTIES':
+                    space.context = 'RENDER'
 
 
 COMMANDS = {'render': render, 'snapshot': snapshot, 'viewport': viewport}
