@@ -20,6 +20,11 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+// JSON has no word for what is not finite.
+std::string number(double value, const char* format = "{:.3f}") {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "null";
+}
+
 template <class List, class Write>
 std::string array(const List& list, Write write) {
   std::string result = "[";
@@ -44,19 +49,19 @@ void RenderRequest::check() const {
 
 std::string RenderStats::to_json() const {
   const auto effect = [](const EffectReport& e) {
-    return fmt::format("{{\"name\": {}, \"runs\": {}, \"reason\": {}, \"ms\": {:.3f}}}",
-                       quoted(e.name), e.runs, quoted(e.reason), e.ms);
+    return fmt::format("{{\"name\": {}, \"runs\": {}, \"reason\": {}, \"ms\": {}}}",
+                       quoted(e.name), e.runs, quoted(e.reason), number(e.ms));
   };
   const auto pass = [](const std::pair<std::string, double>& p) {
-    return fmt::format("{{\"name\": {}, \"ms\": {:.3f}}}", quoted(p.first), p.second);
+    return fmt::format("{{\"name\": {}, \"ms\": {}}}", quoted(p.first), number(p.second));
   };
   return fmt::format(
       "{{\"device\": {}, \"size\": [{}, {}], \"samples\": {}, \"effects\": {}, \"passes\": {}, "
-      "\"build_ms\": {:.3f}, \"trace_ms\": {:.3f}, \"total_ms\": {:.3f}, \"rays\": {}, "
+      "\"build_ms\": {}, \"trace_ms\": {}, \"total_ms\": {}, \"rays\": {}, "
       "\"memory_bytes\": {}, \"estimated_error\": {}, \"warnings\": {}}}",
-      quoted(device), width, height, samples, array(effects, effect), array(passes, pass), build_ms,
-      trace_ms, total_ms, rays, memory_bytes,
-      estimated_error ? fmt::format("{:.6g}", *estimated_error) : "null", array(warnings, quoted));
+      quoted(device), width, height, samples, array(effects, effect), array(passes, pass),
+      number(build_ms), number(trace_ms), number(total_ms), rays, memory_bytes,
+      estimated_error ? number(*estimated_error, "{:.6g}") : "null", array(warnings, quoted));
 }
 
 }  // namespace panoptes::engine

@@ -34,7 +34,9 @@ class Writer {
 class Reader {
  public:
   explicit Reader(const std::string& path) : file_(path, std::ios::binary), path_(path) {
-    if (!file_) fail("snapshot '{}' cannot be opened: check the path", path_);
+    std::error_code error;
+    if (!file_ || !std::filesystem::is_regular_file(path, error))
+      fail("snapshot '{}' cannot be opened: check the path", path_);
     left_ = std::filesystem::file_size(path);
   }
   void bytes(void* data, size_t count) {

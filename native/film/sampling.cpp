@@ -39,10 +39,6 @@ glm::vec2 sample_point(uint32_t index, uint32_t seed, uint32_t dimension) {
   return {recurrence(index, 3242174889u, first), recurrence(index, 2447445414u, second)};
 }
 
-float sample_value(uint32_t index, uint32_t seed, uint32_t dimension) {
-  return recurrence(index, 2654435769u, hash(seed ^ hash(dimension ^ 0x9e3779b9u)));
-}
-
 float blackman_harris_offset(float u, float width) {
   // The inverse by a table of the forward function; its error is below a thousandth of a pixel.
   constexpr int n = 1024;

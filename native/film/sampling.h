@@ -14,9 +14,6 @@ namespace panoptes::film {
 // that depends on `seed` and `dimension`.
 glm::vec2 sample_point(uint32_t index, uint32_t seed, uint32_t dimension);
 
-// The same in one dimension, by the golden ratio.
-float sample_value(uint32_t index, uint32_t seed, uint32_t dimension);
-
 // Maps u in [0,1) to an offset from the pixel's centre, in pixels, distributed as the
 // Blackman-Harris window that spans -width .. width; Cycles' default filter has width 1.5.
 float blackman_harris_offset(float u, float width);

@@ -12,6 +12,10 @@ namespace panoptes::gl {
 
 namespace {
 
+// Mesa forgets a file's number in the messages of its semantic analysis, never the line's: so the
+// line says which file it is in as well.
+constexpr size_t kLinesPerFile = 100000;
+
 class Expander {
  public:
   explicit Expander(const ProgramSource& source) : source_(source) {}
@@ -36,7 +40,10 @@ class Expander {
 
     const size_t index = result_.files.size();
     result_.files.push_back(file);
-    result_.text += fmt::format("#line 1 {}\n", index);
+    const auto line_directive = [&](size_t line) {
+      return fmt::format("#line {} {}\n", index * kLinesPerFile + line, index);
+    };
+    result_.text += line_directive(1);
     std::istringstream lines{std::string(text)};
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
@@ -45,7 +52,7 @@ class Expander {
       std::smatch match;
       if (line.find('#') != std::string::npos && std::regex_match(line, match, include)) {
         append(match[1], file);
-        result_.text += fmt::format("#line {} {}\n", number + 1, index);
+        result_.text += line_directive(size_t(number) + 1);
       } else if (line.find('#') != std::string::npos && std::regex_match(line, pragma_once)) {
         result_.text += "\n";
       } else {
@@ -102,16 +109,18 @@ ExpandedSource expand(const ProgramSource& source, const Stage& stage) {
 
 std::string translate_log(std::string_view log, const std::vector<std::string>& files) {
   // Mesa writes "1:23(7): error: …", NVIDIA "1(23) : error …", glslang "ERROR: 1:23: …".
-  static const std::regex position(R"((\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:)");
+  static const std::regex position(
+      R"((\d{1,8})(?::(\d{1,8})(?:\(\d+\))?|\((\d{1,8})\))\s*:)");
   std::string result;
   std::istringstream lines{std::string(log)};
   std::string line;
   while (std::getline(lines, line)) {
     std::smatch match;
     if (std::regex_search(line, match, position)) {
-      const size_t file = std::min<size_t>(std::stoul(match[1]), files.size() - 1);
-      const std::string number = match[2].matched ? match[2].str() : match[3].str();
-      line = fmt::format("{}{}:{}:{}", match.prefix().str(), files[file], number,
+      const size_t number = std::stoul(match[2].matched ? match[2].str() : match[3].str());
+      const size_t named = number >= kLinesPerFile ? number / kLinesPerFile : std::stoul(match[1]);
+      line = fmt::format("{}{}:{}:{}", match.prefix().str(),
+                         files[std::min(named, files.size() - 1)], number % kLinesPerFile,
                          match.suffix().str());
     }
     result += line + '\n';

@@ -62,7 +62,6 @@ void GpuScene::update(scene::Scene& scene) {
   update_meshes(scene, changes);
   const bool structure = changes.instances || !changes.materials.empty();
   if (structure || changes.world) {
-    warnings_.clear();
     update_materials(scene);
   }
   if (structure || changes.world || !changes.images.empty()) update_images(scene, changes);
@@ -106,7 +105,7 @@ GpuShading GpuScene::make_shading(const std::string& name, const std::string& co
   GpuShading shading{name, code, 0, 0, 0, textures};
   const size_t limit = size_t(device_.max_texture_units - kImageUnit);
   if (shading.textures.size() > limit) {
-    warnings_.push_back(fmt::format(
+    material_warnings_.push_back(fmt::format(
         "Material '{}' uses {} images and this graphics driver allows {}; the others show magenta: "
         "merge some of its images.",
         name, textures.size(), limit));
@@ -120,11 +119,12 @@ GpuShading GpuScene::make_shading(const std::string& name, const std::string& co
 void GpuScene::update_materials(const scene::Scene& scene) {
   materials_.clear();
   material_indices_.clear();
+  material_warnings_.clear();
   std::set<scene::Id> used;
   for (const scene::Instance& instance : scene.instances()) {
-    const auto mesh = scene.meshes().find(instance.mesh);
-    if (mesh == scene.meshes().end()) continue;
-    for (const scene::MaterialRange& range : mesh->second.ranges)
+    const scene::Mesh* mesh = scene.mesh_of(instance);
+    if (!mesh) continue;
+    for (const scene::MaterialRange& range : mesh->ranges)
       used.insert(scene.material_of(instance, range.slot));
   }
   for (scene::Id id : used) {
@@ -147,6 +147,7 @@ void GpuScene::update_materials(const scene::Scene& scene) {
 }
 
 void GpuScene::update_images(const scene::Scene& scene, const scene::Changes& changes) {
+  image_warnings_.clear();
   std::set<scene::Id> used;
   for (const GpuMaterial& material : materials_)
     for (const scene::TextureUse& use : material.textures) used.insert(use.image);
@@ -165,7 +166,7 @@ void GpuScene::update_images(const scene::Scene& scene, const scene::Changes& ch
     try {
       images_[id] = upload_image(source->second, device_.max_texture_size);
     } catch (const Error& error) {
-      warnings_.push_back(fmt::format("An image shows magenta: {}.", error.what()));
+      image_warnings_.push_back(fmt::format("An image shows magenta: {}.", error.what()));
       need_missing();
     }
   }
@@ -187,6 +188,12 @@ void GpuScene::update_images(const scene::Scene& scene, const scene::Changes& ch
   }
 }
 
+std::vector<std::string> GpuScene::warnings() const {
+  std::vector<std::string> all = material_warnings_;
+  all.insert(all.end(), image_warnings_.begin(), image_warnings_.end());
+  return all;
+}
+
 void GpuScene::need_missing() {
   if (missing_.texture) return;
   const uint8_t magenta[4] = {255, 0, 255, 255};
@@ -200,7 +207,7 @@ void GpuScene::check_programs(const std::function<void(const GpuMaterial&)>& com
     try {
       compile(material);
     } catch (const Error& error) {
-      warnings_.push_back(fmt::format("Material '{}' shows magenta: {}.", material.name,
+      material_warnings_.push_back(fmt::format("Material '{}' shows magenta: {}.", material.name,
                                       error.what()));
       material.code = kBrokenMaterial;
     }
@@ -209,7 +216,7 @@ void GpuScene::check_programs(const std::function<void(const GpuMaterial&)>& com
   try {
     compile_world(*world_);
   } catch (const Error& error) {
-    warnings_.push_back(fmt::format("The world is shown black: {}.", error.what()));
+    material_warnings_.push_back(fmt::format("The world is shown black: {}.", error.what()));
     world_->code = "vec3 evaluate_world(vec3 direction) { return vec3(0.0); }\n";
   }
 }
@@ -324,10 +331,10 @@ void GpuScene::update_draws(const scene::Scene& scene) {
   };
   for (size_t i = 0; i < scene.instances().size(); ++i) {
     const scene::Instance& instance = scene.instances()[i];
-    const auto source = scene.meshes().find(instance.mesh);
-    if (source == scene.meshes().end()) continue;
+    const scene::Mesh* source = scene.mesh_of(instance);
+    if (!source) continue;
     const GpuMesh& mesh = meshes_.at(instance.mesh);
-    for (const scene::MaterialRange& range : source->second.ranges) {
+    for (const scene::MaterialRange& range : source->ranges) {
       const uint32_t material = material_index(scene.material_of(instance, range.slot));
       Pending p;
       p.record = {uint32_t(i), material, range.first, 0};

@@ -98,7 +98,7 @@ class GpuScene {
   }
 
   // What could not be done as asked, for the artist.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  std::vector<std::string> warnings() const;
 
  private:
   struct GpuMesh {
@@ -138,7 +138,7 @@ class GpuScene {
   std::vector<AlphaGroup> alpha_groups_;
   uint32_t opaque_count_ = 0, record_count_ = 0;
   gl::Sampler samplers_[2][3];  // [linear, closest][repeat, extend, clip]
-  std::vector<std::string> warnings_;
+  std::vector<std::string> material_warnings_, image_warnings_;
 };
 
 }  // namespace panoptes::gpu_scene

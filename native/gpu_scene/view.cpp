@@ -50,6 +50,9 @@ shared::View make_view(const glm::dvec3& origin, const glm::dvec3& x, const glm:
   }
   view.filtering = {0.0f, float(std::sqrt(glm::length(dx) * glm::length(dy))),
                     perspective ? 1.0f : 0.0f, 0.0f};
+  view.depth = perspective
+                   ? glm::vec4(near_depth / range, near_depth * far_depth / range, 0, 0)
+                   : glm::vec4(range, far_depth, 0, 0);
   return view;
 }
 
@@ -68,8 +71,11 @@ void Camera::check(int max_size) const {
       if (!std::isfinite(projection[c][r]) || !std::isfinite(world_to_camera[c][r]))
         fail("the camera's place or lens is not finite: check its location, rotation, focal length "
              "and constraints");
+  // The axes must span space; how long they are does not matter.
+  glm::dmat3 axes(world_to_camera);
+  for (int c = 0; c < 3; ++c) axes[c] /= std::max(glm::length(axes[c]), 1e-300);
   if (projection[0][0] == 0 || projection[1][1] == 0 ||
-      std::abs(glm::determinant(glm::dmat3(world_to_camera))) < 1e-12)
+      std::abs(glm::determinant(axes)) < 1e-12)
     fail("the camera's lens or scale is degenerate: check its focal length, scale and constraints");
 }
 

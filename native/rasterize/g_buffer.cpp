@@ -77,27 +77,29 @@ void GBuffer::resize(int width, int height, const GBufferOptions& options) {
   options_ = options;
 }
 
-void GBuffer::render(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
-                     gl::PassTimer& timer) {
-  {
-    gl::PassScope scope(timer, "visibility");
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glViewport(0, 0, width_, height_);
-    const GLuint nothing[4] = {0, 0, 0, 0};
-    const float far_depth = 0.0f;
-    glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 0, nothing);
-    glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, &far_depth);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glDepthMask(GL_TRUE);
-    if (!scene.empty())
-      scene.draw([&](const gpu_scene::GpuMaterial* material) {
-        programs.get(raster_program(material, {.depth_only = false})).use();
-        if (material) scene.bind_shading(*material);
-      });
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  }
+void GBuffer::rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
+                        gl::PassTimer& timer) {
+  gl::PassScope scope(timer, "visibility");
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glViewport(0, 0, width_, height_);
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  const float far_depth = 0.0f;
+  glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 0, nothing);
+  glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, &far_depth);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+  if (!scene.empty())
+    scene.draw([&](const gpu_scene::GpuMaterial* material) {
+      programs.get(raster_program(material, {.depth_only = false})).use();
+      if (material) scene.bind_shading(*material);
+    });
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void GBuffer::shade(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
+                    gl::PassTimer& timer) {
   {
     gl::PassScope scope(timer, "sort_pixels");
     sort_pixels(scene, programs);
@@ -157,6 +159,11 @@ void GBuffer::bind_surfaces() const {
 
 void GBuffer::bind_visibility() const {
   visibility_.bind(gpu_scene::kFreeUnit);
+  glBindSampler(gpu_scene::kFreeUnit, 0);
+}
+
+void GBuffer::bind_depth() const {
+  depth_.bind(gpu_scene::kFreeUnit);
   glBindSampler(gpu_scene::kFreeUnit, 0);
 }
 

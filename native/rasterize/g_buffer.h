@@ -43,14 +43,18 @@ class GBuffer {
   // (Re)allocates when the size or the options differ from the last call's.
   void resize(int width, int height, const GBufferOptions& options);
 
-  // Fills everything for the view, which must be the one set in the ViewBlock.
-  void render(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs, gl::PassTimer& timer);
+  // Finds the triangle and the depth of each pixel for the view that is set in the ViewBlock.
+  void rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
+                 gl::PassTimer& timer);
+  // Evaluates the materials of what rasterize() found.
+  void shade(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs, gl::PassTimer& timer);
 
   // For programs that include rasterize/bins.glsl and read the G-buffer. Call with the program in
   // use; sets the uniform `material_count`.
   void bind_bins() const;
   void bind_surfaces() const;
   void bind_visibility() const;
+  void bind_depth() const;  // to the same unit
 
   // Runs the program in use over all pixels that show a surface, or over those that show none.
   void dispatch_surfaces() const;

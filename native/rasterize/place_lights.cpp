@@ -73,12 +73,13 @@ void add_cube(std::vector<gpu_scene::LightView>& faces, const glm::dvec3& positi
   }
 }
 
-shared::Light describe(const scene::Light& lamp, const scene::LightSample& sample,
+shared::Light describe(const scene::Light& lamp, const scene::LightSample& sample, bool centre,
                        const glm::dvec3& camera_origin) {
   shared::Light light{};
   const glm::dvec3 relative = glm::dvec3(sample.position) - camera_origin;
   const bool disk = lamp.type == scene::LightType::kPoint || lamp.type == scene::LightType::kSpot;
-  light.position = glm::vec4(glm::vec3(relative), disk ? lamp.radius : 0.0f);
+  light.position = glm::vec4(glm::vec3(relative), disk && centre ? lamp.radius : 0.0f);
+  light.center = glm::vec4(glm::vec3(glm::dvec3(lamp.position()) - camera_origin), 0.0f);
   light.axis = glm::vec4(sample.direction, 0.0f);
   light.power = glm::vec4(lamp.power() * sample.weight, 0.0f);
   light.type = lamp.type == scene::LightType::kPoint  ? shared::LIGHT_POINT
@@ -135,7 +136,7 @@ LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows,
     const scene::LightSample sample = points.empty()
                                           ? scene::light_center(lamp)
                                           : scene::sample_light(lamp, point.u, point.v, target);
-    PlacedLight placed{describe(lamp, sample, camera_origin), lamp.type, {}};
+    PlacedLight placed{describe(lamp, sample, points.empty(), camera_origin), lamp.type, {}};
     if (shadows && lamp.cast_shadow && !bounds.empty()) {
       const glm::dvec3 position(sample.position), direction(sample.direction);
       if (lamp.type == scene::LightType::kSun) {

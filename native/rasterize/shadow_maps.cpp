@@ -49,7 +49,7 @@ void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
       shared::View view = gpu_scene::light_view(face, settings.resolution);
       view.size.z = camera.size.z;
       view.size.w = camera.size.w;
-      view.alpha = camera.alpha;
+      view.alpha = {camera.alpha.x, float(batch.first_face + uint32_t(layer) + 1), 0, 0};
       view.filtering.x = camera.filtering.x;
       view_block.set(view);
       glNamedFramebufferTextureLayer(framebuffer_.id(), GL_DEPTH_ATTACHMENT, maps_.id(), 0,

@@ -12,6 +12,9 @@ namespace panoptes::realtime {
 
 namespace {
 
+// Where a single threshold has to do: Blender's own for its depth pass.
+constexpr float kCutAlpha = 0.5f;
+
 void stop_if(const std::atomic<bool>& cancelled) {
   if (cancelled) throw Cancelled{};
 }
@@ -60,6 +63,14 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
   return source;
 }
 
+gl::ProgramSource depth_program(const film::Film& film) {
+  gl::ProgramSource source;
+  source.name = "depth";
+  source.stages = {{GL_COMPUTE_SHADER, "realtime/depth.comp"}};
+  film.add_defines(source);
+  return source;
+}
+
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world) {
   gl::ProgramSource source;
   source.name = "world background";
@@ -90,6 +101,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
                         runs(plan, "spot_shadows") || runs(plan, "area_shadows"));
   background_ = runs(plan, "world_background") && gpu.world();
   world_light_ = runs(plan, "world_light");
+  depth_ = runs(plan, "pass_depth");
   lights_ = scene.lights();
   bounds_ = scene.bounds();
 
@@ -146,14 +158,23 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   shared::View view = gpu_scene::camera_view(camera_, jitter);
   view.size.z = int(index);
   view.size.w = int(settings_.seed);
-  view.alpha = centre ? glm::vec4(0.5f, 1, 0, 0)
-                      : glm::vec4(film::sample_value(index, settings_.seed, 1), 0, 0, 0);
+  view.alpha = {centre ? kCutAlpha : -1.0f, 0, 0, 0};
   // N samples share the pixel's footprint, so each may look sqrt(N) times finer.
   view.filtering.x = -0.5f * std::log2(float(last));
-  view.filtering.w = index == first ? 1.0f : 0.0f;
-  view_block_.set(view);
 
-  g_buffer_.render(gpu, programs_, timer_);
+  if (index == first && depth_) {
+    // Where a surface is half transparent or more, depth is that of what lies behind.
+    shared::View cut = view;
+    cut.alpha.x = kCutAlpha;
+    view_block_.set(cut);
+    g_buffer_.rasterize(gpu, programs_, timer_);
+    write_depth(film);
+  }
+  view_block_.set(view);
+  if (!(index == first && depth_ && (!alpha_ || centre)))
+    g_buffer_.rasterize(gpu, programs_, timer_);
+  stop_if(cancelled);
+  g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (lamps_) add_lamps(index, view, gpu, cancelled);
 
@@ -180,8 +201,21 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   if (background_) environment_.bind(3);
   if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
   film.bind();
-  glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
+  dispatch_pixels();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void Realtime::write_depth(film::Film& film) {
+  gl::PassScope scope(timer_, "pass_depth");
+  programs_.get(depth_program(film)).use();
+  g_buffer_.bind_depth();
+  film.bind();
+  dispatch_pixels();
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void Realtime::dispatch_pixels() const {
+  glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
 }
 
 void Realtime::add_lamps(uint32_t index, const shared::View& view,

@@ -36,6 +36,7 @@ struct ComposeOptions {
   bool transparent_film = false;
 };
 gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
+gl::ProgramSource depth_program(const film::Film& film);
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world);
 gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world);
 
@@ -56,6 +57,8 @@ class Realtime {
                      film::Film& film, const std::atomic<bool>& cancelled);
 
  private:
+  void write_depth(film::Film& film);
+  void dispatch_pixels() const;
   void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
   void add_lamps(uint32_t index, const shared::View& view,
                  const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
@@ -68,7 +71,7 @@ class Realtime {
   Settings settings_;
   plan::Effects plan_;
   bool glossy_ = false, emission_ = false, lamps_ = false, shadows_ = false, soft_ = false;
-  bool alpha_ = false, background_ = false, world_light_ = false;
+  bool alpha_ = false, background_ = false, world_light_ = false, depth_ = false;
   std::vector<scene::Light> lights_;
   scene::Bounds bounds_;
 

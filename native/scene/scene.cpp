@@ -169,17 +169,6 @@ void Scene::remove_mesh(Id id) {
 }
 
 void Scene::set_instances(std::vector<Instance> instances, std::vector<Id> material_table) {
-  size_t dropped = 0;
-  for (Instance& instance : instances)
-    if (!finite(instance.object_to_world)) {
-      instance.mesh = 0;  // keeps its index, draws nothing
-      ++dropped;
-    }
-  instance_warning_ =
-      dropped ? fmt::format("{} objects have a matrix that is not finite and are left out: check "
-                            "their location, rotation, scale and constraints.",
-                            dropped)
-              : "";
   instances_ = std::move(instances);
   material_table_ = std::move(material_table);
   changes_.instances = true;
@@ -194,10 +183,13 @@ void Scene::set_instance_matrices(std::span<const int> indices,
   for (size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] < 0 || size_t(indices[i]) >= instances_.size())
       fail("instance {} does not exist: please report it", indices[i]);
-    if (!finite(matrices[i])) continue;  // stays where it was
-    instances_[size_t(indices[i])].object_to_world = matrices[i];
-    if (!changes_.instances) changes_.instance_matrices.insert(uint32_t(indices[i]));
+    Instance& instance = instances_[size_t(indices[i])];
+    // Whoever comes or goes changes the list of what is drawn.
+    if (finite(instance.object_to_world) != finite(matrices[i])) changes_.instances = true;
+    instance.object_to_world = matrices[i];
+    changes_.instance_matrices.insert(uint32_t(indices[i]));
   }
+  if (changes_.instances) changes_.instance_matrices.clear();
 }
 
 void Scene::set_material(Id id, Material material) {
@@ -245,6 +237,11 @@ void Scene::set_world(World world) {
   changes_.world = true;
 }
 
+const Mesh* Scene::mesh_of(const Instance& instance) const {
+  const auto mesh = meshes_.find(instance.mesh);
+  return mesh != meshes_.end() && finite(instance.object_to_world) ? &mesh->second : nullptr;
+}
+
 Id Scene::material_of(const Instance& instance, int slot) const {
   const int64_t index = int64_t(instance.material_offset) + slot;
   if (index < 0 || index >= int64_t(material_table_.size())) return 0;
@@ -256,11 +253,11 @@ Facts Scene::facts() const {
   Facts facts;
   std::set<Id> used;
   for (const Instance& instance : instances_) {
-    const auto mesh = meshes_.find(instance.mesh);
-    if (mesh == meshes_.end()) continue;
+    const Mesh* mesh = mesh_of(instance);
+    if (!mesh) continue;
     ++facts.instances;
-    facts.triangles += int64_t(mesh->second.triangles.size());
-    for (const MaterialRange& range : mesh->second.ranges)
+    facts.triangles += int64_t(mesh->triangles.size());
+    for (const MaterialRange& range : mesh->ranges)
       used.insert(material_of(instance, range.slot));
   }
   for (Id id : used) {
@@ -284,9 +281,9 @@ Facts Scene::facts() const {
 Bounds Scene::bounds() const {
   Bounds all;
   for (const Instance& instance : instances_) {
-    const auto mesh = meshes_.find(instance.mesh);
-    if (mesh == meshes_.end()) continue;
-    const Bounds placed = placed_bounds(mesh->second.bounds, instance.object_to_world);
+    const Mesh* mesh = mesh_of(instance);
+    if (!mesh) continue;
+    const Bounds placed = placed_bounds(mesh->bounds, instance.object_to_world);
     if (placed.empty()) continue;
     all.add(placed.low);
     all.add(placed.high);
@@ -298,7 +295,13 @@ std::vector<std::string> Scene::warnings() const {
   std::vector<std::string> result;
   for (const auto& [id, mesh] : meshes_)
     if (!mesh.warning.empty()) result.push_back(mesh.warning);
-  if (!instance_warning_.empty()) result.push_back(instance_warning_);
+  const auto lost = std::count_if(instances_.begin(), instances_.end(), [](const Instance& i) {
+    return !finite(i.object_to_world);
+  });
+  if (lost > 0)
+    result.push_back(fmt::format("{} objects have a matrix that is not finite and are left out: "
+                                 "check their location, rotation, scale and constraints.",
+                                 lost));
   return result;
 }
 

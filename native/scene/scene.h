@@ -82,7 +82,7 @@ Mesh make_mesh(const MeshInput& input);
 
 struct Instance {
   Id mesh = 0;
-  glm::mat4 object_to_world{1.0f};  // column-major, as GLM has it
+  glm::mat4 object_to_world{1.0f};  // column-major, as GLM has it; not finite: draws nothing
   int material_offset = 0;          // in Scene::material_table, one entry a slot
 };
 
@@ -148,7 +148,7 @@ class Scene {
  public:
   void set_mesh(Id id, Mesh mesh);
   void remove_mesh(Id id);
-  // Leaves out instances whose matrix is not finite (a warning) and those of unknown meshes.
+  // Instances whose matrix is not finite are left out (a warning) until they get another.
   void set_instances(std::vector<Instance> instances, std::vector<Id> material_table);
   void set_instance_matrices(std::span<const int> indices, std::span<const glm::mat4> matrices);
   void set_material(Id id, Material material);
@@ -167,6 +167,8 @@ class Scene {
   const std::vector<Light>& lights() const { return lights_; }
   const World& world() const { return world_; }
 
+  // The mesh that an instance shows; null when there is none or its place is not finite.
+  const Mesh* mesh_of(const Instance& instance) const;
   // The material of a slot of an instance; 0 (the default grey) where none is set.
   Id material_of(const Instance& instance, int slot) const;
   Facts facts() const;
@@ -182,7 +184,6 @@ class Scene {
   std::map<Id, Image> images_;
   std::vector<Light> lights_;
   World world_;
-  std::string instance_warning_;
   Changes changes_;
 };
 

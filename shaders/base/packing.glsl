@@ -24,5 +24,17 @@ uint hash(uint x) {
   return (word >> 22u) ^ word;
 }
 
+// Nested (Owen) scrambling of the van der Corput sequence (Laine and Karras 2011): for each `scramble`
+// another sequence over `index`, uniform, stratified over every power of two of indices, and
+// independent of the others. 32 bits of a value in [0, 1).
+uint scrambled_radical_inverse(uint index, uint scramble) {
+  uint x = index + scramble;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return bitfieldReverse(x);
+}
+
 // Uniform in [0, 1), from the 24 bits that a float can hold.
 float unit_float(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }

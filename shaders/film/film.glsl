@@ -8,5 +8,3 @@ void film_add(int layer, ivec2 pixel, vec4 value) {
   ivec3 place = ivec3(pixel, layer);
   imageStore(film, place, texelFetch(film_sums, place, 0) + value);
 }
-
-void film_set(int layer, ivec2 pixel, vec4 value) { imageStore(film, ivec3(pixel, layer), value); }

@@ -14,7 +14,9 @@ const uint LIGHT_AREA = 3u;
 const uint NO_SHADOW = 0xffffffffu;
 
 struct Light {
-  vec4 position;   // xyz: relative to the camera, metres (lamps but suns); w: radius, metres
+  vec4 position;   // xyz: the point of it that this sample uses, relative to the camera, metres
+                   // (lamps but suns); w: its radius while the point is the centre
+  vec4 center;     // xyz: likewise, of the whole lamp
   vec4 axis;       // xyz: unit, where it shines (suns, spots, areas)
   vec4 power;      // xyz: irradiance at normal incidence (suns, W/m2), else radiant intensity (W/sr)
   vec4 cone;       // spots: x cosine of the half angle, y 1 / width of the blend in cosines
@@ -24,7 +26,7 @@ struct Light {
   uint faces;      // 1, or 6 of a cube in the order +x -x +y -y +z -z
   uint padding;
 };
-SHARED_ASSERT_SIZE(Light, 80)
+SHARED_ASSERT_SIZE(Light, 96)
 
 // A shadow map's frame. For a point p relative to `origin`, its depth is dot(p, axis), and its place
 // in the map, -1..1, is (dot(p, x), dot(p, y)) / (perspective ? depth : 1) - (x.w, y.w).

@@ -3,6 +3,7 @@
 // evaluate_material(hit, surface) adds closures to a Surface. A Surface holds one lobe of each kind;
 // several closures of a kind are merged, colours by sum, roughness and normal by weight, which is
 // exact for a single closure and a fair approximation for a mix.
+#include "base/color.glsl"
 #include "gpu_scene/geometry.glsl"
 
 layout(binding = 6) uniform samplerBuffer material_params;
@@ -16,8 +17,6 @@ layout(location = 0) uniform uvec3 material_block;
 #define ATTRIBUTE(n) int(table(int(material_block.y) + (n)))
 
 vec4 param(int i) { return texelFetch(material_params, int(material_block.x) + i); }
-
-float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
 // --- images -----------------------------------------------------------------------------------------
 
@@ -40,10 +39,6 @@ float uv_per_metre(Hit hit) {
   return sqrt(abs(d1.x * d2.y - d1.y * d2.x) / hit.area);
 }
 
-vec3 linear_from_srgb(vec3 code) {
-  return mix(code / 12.92, pow((code + 0.055) / 1.055, vec3(2.4)), greaterThan(code, vec3(0.04045)));
-}
-
 // Codes are filtered as they are and linearised afterwards, as Cycles does with 8-bit images.
 // The texture level from the pixel's footprint (ray cones, Akenine-Moller et al. 2019), along the
 // narrow axis: what the wide axis needs at grazing angles comes from the samples of the pixel.
@@ -55,8 +50,10 @@ vec4 sample_image_at(sampler2D image, bool srgb, Hit hit, vec2 uv, bool unassoci
   if (srgb) color.rgb = linear_from_srgb(color.rgb);
   return color;
 }
-#define sample_image(hit, index, uv, unassociate) \
-  sample_image_at(material_images[index], ((material_block.z >> (index)) & 1u) != 0u, hit, uv, \
+// Images beyond what the driver allows share the last unit, which shows a missing one.
+#define sample_image(hit, index, uv, unassociate)                                              \
+  sample_image_at(material_images[min(index, IMAGE_COUNT - 1)],                                \
+                  ((material_block.z >> min(index, IMAGE_COUNT - 1)) & 1u) != 0u, hit, uv,     \
                   unassociate)
 
 // --- normal maps ------------------------------------------------------------------------------------
@@ -93,6 +90,8 @@ vec3 normal_map_tangent(Hit hit, int uv_attribute, vec3 color, float strength) {
   float handedness = d1.x * d2.y - d1.y * d2.x < 0.0 ? -1.0 : 1.0;
   vec3 n = hit.normal_unflipped;
   vec3 t = (hit.edge1 * d2.y - hit.edge2 * d1.y) * handedness;
+  // Coordinates without an area give no direction; Cycles then takes the object's X axis.
+  if (d1.x * d2.y == d1.y * d2.x) t = fetch_transform(hit.instance, vec3(0.0)).linear[0];
   t = safe_normalize(t - n * dot(n, t), vec3(0.0));
   vec3 b = cross(n, t) * handedness * hit.handedness;
   vec3 c = color * 2.0 - 1.0;

@@ -16,12 +16,14 @@ struct View {
   vec4 ray_direction, ray_direction_dx, ray_direction_dy;
   vec4 axis;         // xyz: unit, the direction in which the view looks
   ivec4 size;        // x, y: pixels; z: sample index; w: seed
-  vec4 alpha;        // x: phase of the alpha test's threshold; y: 1 = one threshold for all pixels
+  vec4 alpha;        // x: threshold of the alpha test, or below 0: a random one; y: which view this
+                     // is, so that views draw different random thresholds
   vec4 filtering;    // x: bias on the texture level (log2); y: width of a pixel at distance 1
-                     // (perspective) or at any distance (orthographic); z: 1 = perspective;
-                     // w: 1 = first sample of the picture
+                     // (perspective) or at any distance (orthographic); z: 1 = perspective
+  vec4 depth;        // from stored depth z to metres along the axis: perspective y / (z + x),
+                     // orthographic y - z * x
 };
-SHARED_ASSERT_SIZE(View, 64 + 16 * 11)
+SHARED_ASSERT_SIZE(View, 64 + 16 * 12)
 
 // What is drawn at once: one material of one instance. The visibility buffer names it by index + 1.
 struct DrawRecord {

@@ -16,12 +16,15 @@ void main() {
   Hit hit = fetch_hit(view_ray(gl_FragCoord.xy), drawn.y, triangle);
   Surface surface = empty_surface();
   evaluate_material(hit, surface);
-  // A threshold uniform over samples and pixels makes the mean over samples the exact coverage; a
-  // single sample has one threshold for all pixels, since a clean edge beats noise.
+  // A threshold that is uniform over the samples makes their mean the exact coverage; layers and
+  // views have thresholds of their own, so that what passes several is the product of all. A single
+  // sample has one threshold for all pixels, since a clean edge beats noise.
   float threshold = view.alpha.x;
-  if (view.alpha.y < 0.5) {
+  if (threshold < 0.0) {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
-    threshold = fract(threshold + unit_float(hash(pixel.x + hash(pixel.y + hash(triangle)))));
+    uint layer = hash(triangle + hash(drawn.y + hash(uint(view.size.w) + floatBitsToUint(view.alpha.y))));
+    threshold = unit_float(scrambled_radical_inverse(uint(view.size.z),
+                                                     hash(pixel.x + hash(pixel.y + layer))));
   }
   if (1.0 - luminance(surface.transparency) <= threshold) discard;
 #endif

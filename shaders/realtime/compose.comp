@@ -96,11 +96,6 @@ void main() {
   float brightness = dot(combined, vec3(0.2126, 0.7152, 0.0722));
   film_add(FILM_MOMENTS, pixel, vec4(brightness, brightness * brightness, 0.0, 0.0));
 #endif
-#ifdef FILM_DEPTH
-  // Depth is not filtered: the first sample decides, as in Cycles.
-  if (view.filtering.w > 0.5)
-    film_set(FILM_DEPTH, pixel, vec4(covered ? dot(g.position, view.axis.xyz) : 1.0e10));
-#endif
 #ifdef FILM_NORMAL
   film_add(FILM_NORMAL, pixel, vec4(g.normal, 0.0));
 #endif

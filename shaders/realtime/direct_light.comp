@@ -32,7 +32,7 @@ uint cube_face(vec3 from_light) {
 }
 
 // How far a surface may rise from texel to texel, in texels, before its slope counts no further.
-const float STEEPEST = 8.0;
+const float STEEPEST = 256.0;
 
 // The share of the light that arrives, 0..1: the mean of the four nearest texels, each compared with
 // the depth at which its own ray meets the receiver's plane. So a tilted plane neither shades itself
@@ -86,6 +86,11 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
 }
 #endif
 
+vec3 safe_unit(vec3 v, vec3 otherwise) {
+  float squared = dot(v, v);
+  return squared > 0.0 ? v * inversesqrt(squared) : otherwise;
+}
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= bins[material_count + 1u].count) return;
@@ -103,6 +108,9 @@ void main() {
       float squared = max(dot(d, d), 1.0e-20);
       to_light = d * inversesqrt(squared);
       irradiance /= squared + light.position.w * light.position.w;
+      // Points and spots with a radius are disks that face whatever they light.
+      if (light.type != LIGHT_AREA)
+        irradiance *= max(dot(safe_unit(light.center.xyz - g.position, to_light), to_light), 0.0);
       float cosine = -dot(to_light, light.axis.xyz);
       if (light.type == LIGHT_SPOT) irradiance *= spot_falloff(light.cone.xy, cosine);
       if (light.type == LIGHT_AREA) irradiance *= area_falloff(light.cone.xy, cosine);
