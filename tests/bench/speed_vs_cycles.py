@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How long Panoptes takes beside Cycles, in one run on one machine; a measurement, never a test.
+
+    ./panoptes bench [--size 960x540] [--scene FILE.blend] [--repeat 3] [--samples 1] [--json]
+    blender -b --factory-startup -P tests/bench/speed_vs_cycles.py -- [the same options]
+
+Measured is the wall time of one bpy.ops.render.render at one sample a pixel: for Cycles that is
+synchronisation, BVH and the first sample of its paths; for Panoptes (Real-time) synchronisation, upload
+and light. Both spend the same on Blender's side of it (evaluating the scene, storing the result). Each
+engine gets processes of its own, in turn, since a process keeps what its first render made:
+
+    first    the first render in a fresh process: for Panoptes also the GL context and compiling its programs
+    opened   the file opened again in the same process: everything is read, sent and lit anew, programs stay
+    again    the same file once more
+
+The bar (of the "opened" row) is 2 on Sponza at 960x540: twice Cycles' time to synchronise and trace one sample.
+"""
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+ROOT = Path(__file__).resolve().parents[2]
+ROWS = ("first", "opened", "again")
+ENGINES = ("CYCLES", "PANOPTES")
+# The slowest scene at hand takes seconds; this only ends what hangs.
+TIME_LIMIT_SECONDS = 900
+
+
+def parse_options():
+    parser = argparse.ArgumentParser(prog="panoptes bench", description=__doc__.splitlines()[0])
+    parser.add_argument("--size", default="960x540", help="width x height in pixels")
+    parser.add_argument("--scene", help="a .blend; Sponza beside the checkout if there is one, else our atrium")
+    parser.add_argument("--repeat", type=int, default=3, help="processes for each engine; the median counts")
+    parser.add_argument("--samples", type=int, default=1, help="of Panoptes; Cycles always takes one")
+    parser.add_argument("--json", action="store_true", help="print every measurement as JSON")
+    parser.add_argument("--child", choices=ENGINES, help=argparse.SUPPRESS)
+    arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    options = parser.parse_args(arguments)
+    try:
+        options.width, options.height = (int(part) for part in options.size.lower().split("x"))
+    except ValueError:
+        parser.error(f"the size {options.size} is not WIDTHxHEIGHT.")
+    sponza = ROOT.parent / "shared" / "scenes" / "sponza_crytek.blend"
+    options.scene = options.scene or str(sponza if sponza.is_file() else ROOT / "blend_scenes" / "atrium.blend")
+    if not Path(options.scene).is_file():
+        parser.error(f"there is no scene at {options.scene}.")
+    if min(options.width, options.height, options.repeat, options.samples) < 1:
+        parser.error("sizes and counts must be at least 1.")
+    return options
+
+
+# --- in a process of one engine -------------------------------------------------------------------------
+
+
+def prepare(options):
+    """Opens the scene and sets what is measured."""
+    bpy.ops.wm.open_mainfile(filepath=options.scene)
+    scene = bpy.context.scene
+    render = scene.render
+    render.engine = options.child
+    render.resolution_x, render.resolution_y, render.resolution_percentage = options.width, options.height, 100
+    render.use_compositing = render.use_sequencer = render.use_persistent_data = False
+    if options.child == "CYCLES":
+        scene.cycles.device, scene.cycles.samples = "CPU", 1
+        scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+    else:
+        scene.panoptes.method, scene.panoptes.samples = "realtime", options.samples
+    return scene
+
+
+def measure(scene):
+    """Seconds of one render."""
+    began = time.perf_counter()
+    bpy.ops.render.render()
+    seconds = time.perf_counter() - began
+    stats = json.loads(scene.panoptes.last_stats) if scene.render.engine == "PANOPTES" and scene.panoptes.last_stats else {}
+    return {"seconds": seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms") if key in stats}}
+
+
+def run_child(options):
+    """Renders thrice and prints the measurements on one line."""
+    sys.path.insert(0, str(ROOT / "addon"))
+    if options.child == "PANOPTES":
+        import panoptes
+        panoptes.register()
+    found = {"first": measure(prepare(options))}
+    scene = prepare(options)
+    found["opened"], found["again"] = measure(scene), measure(scene)
+    print("measured:", json.dumps(found), flush=True)
+
+
+# --- the run --------------------------------------------------------------------------------------------
+
+
+def child(engine, options):
+    """One process of an engine; returns its measurements. Leaves with a sentence where it fails."""
+    command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "-P", __file__, "--",
+               "--child", engine, "--size", options.size, "--scene", options.scene, "--samples", str(options.samples)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT_SECONDS)
+    for line in done.stdout.splitlines():
+        if line.startswith("measured:"):
+            return json.loads(line.removeprefix("measured:"))
+    tail = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()][-8:]
+    sys.exit(f"{engine} did not render {options.scene} (status {done.returncode}):\n" + "\n".join(tail))
+
+
+def main():
+    options = parse_options()
+    if options.child:
+        run_child(options)
+        return
+    runs = {engine: [] for engine in ENGINES}
+    for turn in range(options.repeat):
+        # Taking turns spreads whatever else the machine does over both.
+        for engine in ENGINES if turn % 2 == 0 else reversed(ENGINES):
+            runs[engine].append(child(engine, options))
+    medians = {row: {engine: statistics.median(run[row]["seconds"] for run in runs[engine]) for engine in ENGINES} for row in ROWS}
+    ratios = {row: medians[row]["PANOPTES"] / medians[row]["CYCLES"] for row in ROWS}
+    if options.json:
+        print(json.dumps({"scene": options.scene, "size": [options.width, options.height], "samples": options.samples,
+                          "medians": medians, "ratios": ratios, "runs": runs}, indent=1))
+        return
+    print(f"{Path(options.scene).name} at {options.width}x{options.height}, median of {options.repeat}, seconds")
+    print(f"{'':8}{'Cycles':>10}{'Panoptes':>10}{'ratio':>8}")
+    for row in ROWS:
+        print(f"{row:8}{medians[row]['CYCLES']:10.3f}{medians[row]['PANOPTES']:10.3f}{ratios[row]:8.2f}")
+
+
+main()
