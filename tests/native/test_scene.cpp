@@ -1,0 +1,257 @@
+// The scene's bookkeeping: what each edit reports, what facts say, what is refused.
+#include "base/error.h"
+#include "support.h"
+
+#include <limits>
+
+namespace panoptes::test {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+class SceneChanges : public ::testing::Test {
+ protected:
+  SceneChanges() {
+    scene.set_mesh(7, floor_at(0, 1).mesh());
+    scene.set_mesh(8, box({0, 0, 0}, glm::vec3(1)).mesh());
+    scene.set_material(3, lambert());
+    scene.set_image(5, scene::make_image("i", 1, 1, std::span<const uint8_t>(texel), true,
+                                         scene::AlphaMode::kStraight));
+    scene.set_instances({{7, glm::mat4(1), 0}, {8, glm::mat4(1), 0}}, {3});
+    scene.take_changes();
+  }
+
+  // The changes of one edit, which must leave nothing for a second look.
+  template <class F>
+  scene::Changes of(F edit) {
+    edit();
+    const scene::Changes changes = scene.take_changes();
+    EXPECT_FALSE(scene.take_changes().any());
+    return changes;
+  }
+
+  struct Expected {
+    std::set<Id> meshes = {}, materials = {}, material_params = {}, images = {};
+    std::set<uint32_t> matrices = {};
+    bool instances = false, lights = false, world = false;
+  };
+  static void expect(const scene::Changes& c, const Expected& e) {
+    EXPECT_EQ(c.meshes, e.meshes);
+    EXPECT_EQ(c.materials, e.materials);
+    EXPECT_EQ(c.material_params, e.material_params);
+    EXPECT_EQ(c.images, e.images);
+    EXPECT_EQ(c.instance_matrices, e.matrices);
+    EXPECT_EQ(c.instances, e.instances);
+    EXPECT_EQ(c.lights, e.lights);
+    EXPECT_EQ(c.world, e.world);
+  }
+
+  static constexpr uint8_t texel[4] = {1, 2, 3, 4};
+  scene::Scene scene;
+};
+
+TEST_F(SceneChanges, AMovedVertexTouchesItsMeshAlone) {
+  expect(of([&] { scene.set_mesh(7, floor_at(2, 1).mesh()); }), {.meshes = {7}});
+}
+
+TEST_F(SceneChanges, NewRangesTouchTheDrawsToo) {
+  Geometry more = floor_at(0, 1);
+  more.add(floor_at(1, 1), 1);
+  expect(of([&] { scene.set_mesh(7, more.mesh()); }), {.meshes = {7}, .instances = true});
+}
+
+TEST_F(SceneChanges, ANewMeshTouchesTheDraws) {
+  expect(of([&] { scene.set_mesh(9, floor_at(0, 1).mesh()); }),
+         {.meshes = {9}, .instances = true});
+}
+
+TEST_F(SceneChanges, RemovalsAreReportedOnce) {
+  expect(of([&] { scene.remove_mesh(8); }), {.meshes = {8}, .instances = true});
+  expect(of([&] { scene.remove_mesh(8); }), {});
+  expect(of([&] { scene.remove_material(3); }), {.materials = {3}});
+  expect(of([&] { scene.remove_material(3); }), {});
+  expect(of([&] { scene.remove_image(5); }), {.images = {5}});
+  expect(of([&] { scene.remove_image(5); }), {});
+}
+
+TEST_F(SceneChanges, AMovedObjectTouchesItsMatrixAlone) {
+  const int index = 1;
+  const glm::mat4 matrix(2.0f);
+  expect(of([&] { scene.set_instance_matrices({&index, 1}, {&matrix, 1}); }), {.matrices = {1}});
+  EXPECT_EQ(scene.instances()[1].object_to_world, matrix);
+  EXPECT_EQ(scene.instances()[0].object_to_world, glm::mat4(1));
+}
+
+TEST_F(SceneChanges, NewInstancesIncludeTheirMatrices) {
+  expect(of([&] {
+           const int index = 0;
+           const glm::mat4 matrix(2.0f);
+           scene.set_instance_matrices({&index, 1}, {&matrix, 1});
+           scene.set_instances({{7, glm::mat4(1), 0}}, {3});
+         }),
+         {.instances = true});
+}
+
+TEST_F(SceneChanges, ADraggedSliderTouchesParametersAlone) {
+  expect(of([&] { scene.set_material_params(3, {glm::vec4(1, 0, 0, 1)}); }),
+         {.material_params = {3}});
+  expect(of([&] { scene.set_material_params(3, {glm::vec4(1), glm::vec4(2)}); }),
+         {.materials = {3}});
+}
+
+TEST_F(SceneChanges, TheRestReportItself) {
+  expect(of([&] { scene.set_material(4, lambert()); }), {.materials = {4}});
+  expect(of([&] { scene.set_lights({point({0, 0, 1}, 10)}); }), {.lights = true});
+  expect(of([&] { scene.set_world(constant_world(glm::vec3(1))); }), {.world = true});
+  expect(of([&] {
+           scene.set_image(6, scene::make_image("i", 1, 1, std::span<const uint8_t>(texel), true,
+                                                scene::AlphaMode::kStraight));
+         }),
+         {.images = {6}});
+}
+
+TEST_F(SceneChanges, NonsenseIsRefusedAndChangesNothing) {
+  const int far = 2, below = -1, first = 0;
+  const glm::mat4 matrix(1.0f);
+  expect_error([&] { scene.set_instance_matrices({&far, 1}, {&matrix, 1}); }, "instance 2");
+  expect_error([&] { scene.set_instance_matrices({&below, 1}, {&matrix, 1}); }, "instance -1");
+  expect_error([&] { scene.set_instance_matrices({&first, 1}, {}); }, "matrices");
+  expect_error([&] { scene.set_material_params(99, {}); }, "material 99");
+  for (Id id : {Id(0), Id(-4)}) {
+    expect_error([&] { scene.set_mesh(id, {}); }, "mesh");
+    expect_error([&] { scene.set_material(id, {}); }, "material");
+    expect_error([&] { scene.set_image(id, {}); }, "image");
+  }
+  EXPECT_FALSE(scene.take_changes().any());
+}
+
+TEST_F(SceneChanges, ABrokenMatrixLeavesTheObjectOutWithAWarning) {
+  glm::mat4 broken(1.0f);
+  broken[3].y = kNaN;
+  scene.set_instances({{7, glm::mat4(1), 0}, {8, broken, 0}}, {3});
+  ASSERT_EQ(scene.instances().size(), 2u);  // indices stay as the caller counts them
+  EXPECT_EQ(scene.facts().instances, 1);
+  EXPECT_EQ(scene.facts().triangles, 2);
+  EXPECT_EQ(scene.bounds().high, glm::vec3(1, 1, 0));
+  ASSERT_EQ(scene.warnings().size(), 1u);
+  EXPECT_NE(scene.warnings()[0].find("1 objects have a matrix"), std::string::npos)
+      << scene.warnings()[0];
+  scene.set_instances({{7, glm::mat4(1), 0}}, {3});
+  EXPECT_TRUE(scene.warnings().empty());
+}
+
+TEST_F(SceneChanges, AnObjectComesBackWhenItsMatrixIsMended) {
+  glm::mat4 broken(1.0f);
+  broken[0].x = kNaN;
+  scene.set_instances({{7, broken, 0}}, {3});
+  const int index = 0;
+  const glm::mat4 matrix(1.0f);
+  scene.set_instance_matrices({&index, 1}, {&matrix, 1});
+  EXPECT_EQ(scene.facts().instances, 1);
+  EXPECT_TRUE(scene.warnings().empty());
+}
+
+TEST(SceneLights, DropsLampsThatCannotShine) {
+  scene::Scene scene;
+  scene::Light dark = point({0, 0, 1}, 0), black = point({0, 0, 1}, 5), broken = point({0, 0, 1}, 5),
+               energy = point({0, 0, 1}, kNaN), color = point({0, 0, 1}, 5);
+  black.color = glm::vec3(0);
+  broken.object_to_world[3].x = std::numeric_limits<float>::infinity();
+  color.color.g = kNaN;
+  scene::Light negative = sun({0, 0, -1}, -2);
+  scene.set_lights({dark, black, point({0, 0, 3}, 7), broken, energy, color, negative});
+  ASSERT_EQ(scene.lights().size(), 2u);
+  EXPECT_EQ(scene.lights()[0].energy, 7);
+  EXPECT_EQ(scene.lights()[1].energy, -2);  // Blender allows lamps that take light away
+}
+
+TEST(SceneFacts, CountWhatInstancesUse) {
+  scene::Scene scene;
+  EXPECT_EQ(scene.facts().triangles, 0);
+  EXPECT_FALSE(scene.facts().world);
+  EXPECT_TRUE(scene.bounds().empty());
+
+  Geometry two = floor_at(0, 1);
+  two.add(floor_at(1, 1), 1);
+  scene.set_mesh(1, two.mesh());
+  scene.set_material(1, material(kLambert, {}, {.alpha = true, .glossy = false}));
+  scene.set_material(2, material(kLambert, {}, {.emission = true, .glossy = false}));
+  scene.set_material(
+      3, material(kLambert, {}, {.normal_map = true, .glossy = true, .transmission = true}));
+  scene.set_instances({{1, glm::mat4(1), 0}, {1, glm::mat4(1), 0}, {99, glm::mat4(1), 0}}, {1, 2});
+  scene::Facts facts = scene.facts();
+  EXPECT_EQ(facts.triangles, 8);
+  EXPECT_EQ(facts.instances, 2);
+  EXPECT_TRUE(facts.alpha);
+  EXPECT_TRUE(facts.emission);
+  EXPECT_FALSE(facts.normal_map);  // no instance uses material 3
+  EXPECT_FALSE(facts.glossy);
+  EXPECT_FALSE(facts.transmission);
+
+  // A slot past the table and a removed material both show the default, which is glossy.
+  scene.set_instances({{1, glm::mat4(1), 1}}, {1, 2});
+  EXPECT_TRUE(scene.facts().glossy);
+  EXPECT_FALSE(scene.facts().alpha);
+  scene.set_instances({{1, glm::mat4(1), 0}}, {3, 42});
+  facts = scene.facts();
+  EXPECT_TRUE(facts.normal_map);
+  EXPECT_TRUE(facts.transmission);
+  EXPECT_EQ(scene.material_of(scene.instances()[0], 1), 0);
+}
+
+TEST(SceneFacts, CountLampsAndTheWorld) {
+  scene::Scene scene;
+  scene::Light silent = area({0, 0, 1}, {0, 0, -1}, 5, scene::AreaShape::kDisk, 1, 1);
+  silent.cast_shadow = false;
+  scene.set_lights({point({0, 0, 1}, 5), point({0, 0, 2}, 5), sun({0, 0, -1}, 1), silent});
+  scene::Facts facts = scene.facts();
+  EXPECT_EQ(facts.lamp_count(), 4);
+  EXPECT_EQ(facts.shadow_lamp_count(), 3);
+  EXPECT_EQ(facts.lamps[int(scene::LightType::kPoint)], 2);
+  EXPECT_EQ(facts.shadow_lamps[int(scene::LightType::kArea)], 0);
+  EXPECT_TRUE(facts.extended_lamps);
+  scene.set_lights({point({0, 0, 1}, 5), sun({0, 0, -1}, 1)});
+  EXPECT_FALSE(scene.facts().extended_lamps);
+
+  scene.set_world(constant_world(glm::vec3(0)));
+  EXPECT_FALSE(scene.facts().world);
+  scene.set_world(constant_world(glm::vec3(0, 0.1f, 0)));
+  EXPECT_TRUE(scene.facts().world);
+  scene.set_world(world("vec3 evaluate_world(vec3 d) { return vec3(0.0); }"));
+  EXPECT_TRUE(scene.facts().world);  // nobody knows without asking each direction
+}
+
+TEST(MakeImage, PremultipliesStraightColoursInTheirCodes) {
+  const uint8_t rgba[8] = {128, 64, 255, 64, 255, 0, 7, 255};
+  const auto bytes = [&](bool srgb, scene::AlphaMode mode) {
+    return scene::make_image("i", 2, 1, std::span<const uint8_t>(rgba), srgb, mode).bytes;
+  };
+  using Bytes = std::vector<uint8_t>;
+  EXPECT_EQ(bytes(true, scene::AlphaMode::kStraight), (Bytes{32, 16, 64, 64, 255, 0, 7, 255}));
+  EXPECT_EQ(bytes(true, scene::AlphaMode::kPremultiplied), (Bytes(rgba, rgba + 8)));
+  EXPECT_EQ(bytes(true, scene::AlphaMode::kChannelPacked), (Bytes(rgba, rgba + 8)));
+  EXPECT_EQ(bytes(true, scene::AlphaMode::kNone), (Bytes{128, 64, 255, 255, 255, 0, 7, 255}));
+  EXPECT_EQ(bytes(false, scene::AlphaMode::kStraight), (Bytes(rgba, rgba + 8)));  // no colour
+}
+
+TEST(MakeImage, KeepsFloatsFinite) {
+  const float rgba[4] = {kNaN, 2, std::numeric_limits<float>::infinity(), 0.5f};
+  const scene::Image image = scene::make_image("i", 1, 1, std::span<const float>(rgba), true,
+                                               scene::AlphaMode::kStraight);
+  EXPECT_EQ(image.floats, (std::vector<float>{0, 1, 0, 0.5f}));
+  EXPECT_TRUE(image.is_float());
+}
+
+TEST(MakeImage, RefusesSizesThatDoNotFit) {
+  const uint8_t rgba[8] = {};
+  for (const auto& [w, h] : {std::pair(0, 1), {1, 0}, {-1, -2}, {1, 1}, {3, 1}})
+    expect_error(
+        [&, w = w, h = h] {
+          scene::make_image("wood", w, h, std::span<const uint8_t>(rgba), true,
+                            scene::AlphaMode::kNone);
+        },
+        "'wood'");
+}
+
+}  // namespace
+}  // namespace panoptes::test

@@ -1,0 +1,184 @@
+// Every permutation that native code can ask for: valid to the reference compiler, and accepted by
+// the driver at hand.
+#include "base/error.h"
+#include "film/film.h"
+#include "gl/context.h"
+#include "gl/program.h"
+#include "rasterize/g_buffer.h"
+#include "realtime/realtime.h"
+#include "support.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace panoptes::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Calls everything that generated code may call.
+constexpr const char* kEverything =
+    "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+    "  vec2 uv = hit_uv(hit, UV_DEFAULT) + hit_uv(hit, ATTRIBUTE(0));\n"
+    "  vec4 color = hit_color(hit, COLOR_DEFAULT) + hit_color(hit, ATTRIBUTE(1));\n"
+    "  vec3 place = hit_world_position(hit) + hit_object_position(hit) + hit_generated(hit);\n"
+    "  vec3 normal = normal_map_tangent(hit, ATTRIBUTE(0), color.rgb, param(1).x);\n"
+    "  normal = normalize(normal + normal_map_object(hit, color.rgb, 0.5) +\n"
+    "                     normal_map_world(hit, color.rgb, 0.5));\n"
+    "#if IMAGE_COUNT > 0\n"
+    "  color += sample_image(hit, 0, uv, false) + sample_image(hit, 1, uv, true);\n"
+    "#endif\n"
+    "  if (hit.backfacing) color.rgb *= hit.view * hit.geometric_normal * hit.position;\n"
+    "  closure_diffuse(surface, vec3(0.1), color.rgb, 0.5, normal);\n"
+    "  closure_glossy(surface, vec3(0.1), color.rgb, 0.3, normal);\n"
+    "  closure_glass(surface, vec3(0.1), color.rgb, 0.1, 1.5, normal);\n"
+    "  closure_refraction(surface, vec3(0.1), color.rgb, 0.1, 1.5, hit.normal);\n"
+    "  closure_transparent(surface, vec3(0.1), place);\n"
+    "  closure_emission(surface, vec3(0.1), place);\n"
+    "  Principled p = principled_defaults(hit);\n"
+    "  p.metallic = p.specular_tint = p.transmission = p.alpha = param(0).x;\n"
+    "  p.clearcoat = p.sheen = 0.5;\n"
+    "  closure_principled_v3(surface, vec3(0.2), p);\n"
+    "  closure_principled_v4(surface, vec3(0.2), p);\n"
+    "}\n";
+
+constexpr const char* kPlainWorld = "vec3 evaluate_world(vec3 direction) { return param(0).rgb; }\n";
+constexpr const char* kImageWorld =
+    "vec3 evaluate_world(vec3 direction) {\n"
+    "  return sample_environment(0, direction).rgb * luminance(param(0).rgb);\n"
+    "}\n";
+
+class Shaders : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    context = std::make_unique<gl::Context>();
+    enumerate();
+  }
+  static void TearDownTestSuite() {
+    sources.clear();
+    context.reset();
+  }
+
+  static gpu_scene::GpuMaterial material(const char* code, int images, bool alpha) {
+    gpu_scene::GpuMaterial m;
+    m.name = "test";
+    m.code = code;
+    m.textures.resize(size_t(images));
+    m.facts.alpha = alpha;
+    return m;
+  }
+
+  static void add(gl::ProgramSource source) {
+    std::string key = source.key();
+    sources.emplace(std::move(key), std::move(source));
+  }
+
+  static void enumerate() {
+    const char* plain =
+        "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+        "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
+        "}\n";
+    for (bool depth_only : {false, true})
+      add(rasterize::raster_program(nullptr, {.depth_only = depth_only}));
+    for (bool alpha : {false, true})
+      for (const auto& m : {material(plain, 0, alpha), material(kLambert, 0, alpha),
+                            material(kEverything, 0, alpha), material(kEverything, 2, alpha),
+                            material(kEverything, context->device().max_texture_units - 8, alpha)}) {
+        if (alpha)
+          for (bool depth_only : {false, true})
+            add(rasterize::raster_program(&m, {.depth_only = depth_only}));
+        for (bool glossy : {false, true})
+          for (bool emission : {false, true})
+            add(rasterize::surface_program(m, {.glossy = glossy, .emission = emission}));
+      }
+    for (const char* name : {"bin_count", "bin_offsets", "bin_scatter"})
+      add(rasterize::bin_program(name));
+    for (bool shadows : {false, true})
+      for (bool glossy : {false, true}) add(realtime::direct_light_program({shadows, glossy}));
+
+    // Passes only add stores; each alone, none and all stand for the rest.
+    film::Film film;
+    const auto with_film = [&](const film::PassSet& passes, bool moments, int bits) {
+      film.start(4, 4, passes, moments);
+      add(realtime::compose_program({bool(bits & 1), bool(bits & 2), bool(bits & 4), bool(bits & 8),
+                                     bool(bits & 16), bool(bits & 32)},
+                                    film));
+    };
+    for (int bits = 0; bits < 64; ++bits) {
+      with_film(film::PassSet().set(), true, bits);
+      with_film({}, false, bits);
+    }
+    for (int pass = 0; pass < film::kPassCount; ++pass)
+      for (int bits : {0, 31}) with_film(film::PassSet().set(size_t(pass)), false, bits);
+
+    for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
+      gpu_scene::GpuShading world;
+      world.code = code;
+      world.textures.resize(size_t(images));
+      add(realtime::background_program(world));
+      add(realtime::world_project_program(world));
+    }
+  }
+
+  static inline std::unique_ptr<gl::Context> context;
+  static inline std::map<std::string, gl::ProgramSource> sources;  // by key: no doubles
+};
+
+std::string describe(const gl::ProgramSource& source) {
+  std::string text = source.name + ":";
+  for (const std::string& define : source.defines) text += " " + define + ";";
+  return text;
+}
+
+TEST_F(Shaders, TheDriverAcceptsEveryPermutation) {
+  EXPECT_GT(sources.size(), 150u);
+  for (const auto& [key, source] : sources)
+    EXPECT_NO_THROW(gl::Program{source}) << describe(source);
+  EXPECT_NO_THROW(gl::check_errors("compiling"));
+}
+
+TEST_F(Shaders, TheReferenceCompilerAcceptsEveryPermutation) {
+  if (std::system("glslangValidator --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "glslangValidator is not installed (Debian: glslang-tools)";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("panoptes_shaders_{}", getpid());
+  fs::create_directories(folder);
+  std::ofstream list(folder / "list");
+  std::map<std::string, std::string> labels;
+  std::map<std::string, std::vector<std::string>> files;  // that a text's #line numbers mean
+  int number = 0;
+  for (const auto& [key, source] : sources)
+    for (const gl::Stage& stage : source.stages) {
+      const std::string name =
+          fmt::format("{}{}", ++number, fs::path(stage.file).extension().string());
+      const gl::ExpandedSource expanded = gl::expand(source, stage);
+      std::ofstream(folder / name) << expanded.text;
+      files[name] = expanded.files;
+      labels[name] = describe(source);
+      list << name << '\n';
+    }
+  list.close();
+  const std::string command = fmt::format(
+      "cd '{}' && xargs -a list -n 40 glslangValidator > log 2>&1", folder.string());
+  if (std::system(command.c_str()) != 0) {
+    // The first message of each program that has one; a mistake in a shared file shows in many.
+    std::ifstream log(folder / "log");
+    std::map<std::string, int> messages;
+    std::string line, program;
+    while (std::getline(log, line)) {
+      if (labels.count(line)) program = line;
+      if (line.find("ERROR: ") != 0 || program.empty()) continue;
+      const std::string message = gl::translate_log(line, files[program]);
+      if (++messages[message] == 1) ADD_FAILURE() << labels[program] << "\n" << message;
+      program.clear();
+    }
+    EXPECT_FALSE(messages.empty()) << "glslangValidator failed without a word";
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace panoptes::test
