@@ -50,9 +50,6 @@ shared::View make_view(const glm::dvec3& origin, const glm::dvec3& x, const glm:
   }
   view.filtering = {0.0f, float(std::sqrt(glm::length(dx) * glm::length(dy))),
                     perspective ? 1.0f : 0.0f, 0.0f};
-  view.depth = perspective
-                   ? glm::vec4(near_depth / range, near_depth * far_depth / range, 0, 0)
-                   : glm::vec4(range, far_depth, 0, 0);
   return view;
 }
 

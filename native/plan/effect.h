@@ -11,6 +11,7 @@ struct Effect {
   std::string name;    // stable, for scripts: "sun_shadows"
   bool runs = false;
   std::string reason;  // in words an artist understands
+  bool by_choice = false;  // skipped because of a setting, not of the scene: forcing leaves it alone
 };
 
 using Effects = std::vector<Effect>;

@@ -17,7 +17,7 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
   append(film::decide(settings.passes));
   if (settings.force_all_effects)
     for (Effect& effect : all)
-      if (!effect.runs) {
+      if (!effect.runs && !effect.by_choice) {
         effect.runs = true;
         effect.reason = "forced on; by itself it would be skipped: " + effect.reason;
       }

@@ -10,7 +10,7 @@ namespace panoptes::plan {
 struct PlanSettings {
   int samples = 1;
   bool soft_shadows = true;
-  bool force_all_effects = false;  // runs everything; the picture must not change
+  bool force_all_effects = false;  // runs what the scene cannot show too; the picture stays the same
   film::PassSet passes;
 };
 

@@ -41,7 +41,8 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                      soft                       ? "some lamp has an extent; each sample uses a point of it"
                      : !facts.extended_lamps    ? "no lamp has an extent"
                      : !settings.soft_shadows   ? "switched off in the settings"
-                                                : "a single sample shows the lamps' centres"});
+                                                : "a single sample shows the lamps' centres",
+                     !settings.soft_shadows || settings.samples == 1});
   return effects;
 }
 

@@ -80,6 +80,7 @@ void GBuffer::resize(int width, int height, const GBufferOptions& options) {
 void GBuffer::rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
                         gl::PassTimer& timer) {
   gl::PassScope scope(timer, "visibility");
+  records_ = &scene.records();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glViewport(0, 0, width_, height_);
   const GLuint nothing[4] = {0, 0, 0, 0};
@@ -125,7 +126,6 @@ void GBuffer::shade(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs
 
 void GBuffer::sort_pixels(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs) {
   material_count_ = uint32_t(scene.materials().size());
-  records_ = &scene.records();
   const int64_t bytes = int64_t(material_count_ + 2) * kBinBytes;
   if (bins_.bytes() < bytes) bins_ = gl::Buffer(bytes);
   bins_.clear();
@@ -142,7 +142,8 @@ void GBuffer::sort_pixels(const gpu_scene::GpuScene& scene, gl::ProgramCache& pr
 }
 
 void GBuffer::bind_bins() const {
-  if (records_->id()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, records_->id());
+  if (records_ && records_->id())
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, records_->id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, bins_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, pixels_.id());
   glUniform1ui(1, material_count_);
@@ -159,11 +160,6 @@ void GBuffer::bind_surfaces() const {
 
 void GBuffer::bind_visibility() const {
   visibility_.bind(gpu_scene::kFreeUnit);
-  glBindSampler(gpu_scene::kFreeUnit, 0);
-}
-
-void GBuffer::bind_depth() const {
-  depth_.bind(gpu_scene::kFreeUnit);
   glBindSampler(gpu_scene::kFreeUnit, 0);
 }
 

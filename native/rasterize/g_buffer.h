@@ -54,7 +54,6 @@ class GBuffer {
   void bind_bins() const;
   void bind_surfaces() const;
   void bind_visibility() const;
-  void bind_depth() const;  // to the same unit
 
   // Runs the program in use over all pixels that show a surface, or over those that show none.
   void dispatch_surfaces() const;

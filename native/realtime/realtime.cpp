@@ -168,7 +168,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
     cut.alpha.x = kCutAlpha;
     view_block_.set(cut);
     g_buffer_.rasterize(gpu, programs_, timer_);
-    write_depth(film);
+    write_depth(gpu, film);
   }
   view_block_.set(view);
   if (!(index == first && depth_ && (!alpha_ || centre)))
@@ -205,10 +205,12 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void Realtime::write_depth(film::Film& film) {
+void Realtime::write_depth(const gpu_scene::GpuScene& gpu, film::Film& film) {
   gl::PassScope scope(timer_, "pass_depth");
   programs_.get(depth_program(film)).use();
-  g_buffer_.bind_depth();
+  gpu.bind_geometry();
+  g_buffer_.bind_bins();
+  g_buffer_.bind_visibility();
   film.bind();
   dispatch_pixels();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
@@ -225,7 +227,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     for (size_t i = 0; i < lights_.size(); ++i) {
       const glm::vec2 u = film::sample_point(index, settings_.seed, uint32_t(2 + 2 * i));
       const glm::vec2 s = film::sample_point(index, settings_.seed, uint32_t(3 + 2 * i));
-      points.push_back({u.x, u.y, s - 0.5f});
+      points.push_back({u.x, u.y, lights_[i].extended() ? s - 0.5f : glm::vec2(0)});
     }
   const int resolution = settings_.shadows.resolution;
   const rasterize::LightSet set = rasterize::place_lights(

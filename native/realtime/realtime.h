@@ -57,7 +57,7 @@ class Realtime {
                      film::Film& film, const std::atomic<bool>& cancelled);
 
  private:
-  void write_depth(film::Film& film);
+  void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);
   void dispatch_pixels() const;
   void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
   void add_lamps(uint32_t index, const shared::View& view,

@@ -1,5 +1,6 @@
 #include "scene/light.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace panoptes::scene {
@@ -54,6 +55,21 @@ bool Light::extended() const {
     case LightType::kArea: return size_x > 0 || size_y > 0;
     default: return radius > 0;
   }
+}
+
+void make_finite(Light& light) {
+  const auto within = [](float& value, float low, float high) {
+    value = std::isfinite(value) ? std::clamp(value, low, high) : low;
+  };
+  constexpr float kLargest = 1e15f;  // its square is still a float
+  within(light.radius, 0, kLargest);
+  within(light.angle, 0, kPi);
+  within(light.spot_size, 0, kPi);
+  within(light.spot_blend, 0, 1);
+  within(light.size_x, 0, kLargest);
+  within(light.size_y, 0, kLargest);
+  if (!std::isfinite(light.spread)) light.spread = kPi;
+  within(light.spread, 0, kPi);
 }
 
 LightSample light_center(const Light& light) { return {light.position(), light.direction(), 1}; }

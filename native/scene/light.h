@@ -32,6 +32,9 @@ struct Light {
   bool extended() const;
 };
 
+// Replaces sizes and angles that are not finite or out of range by the nearest that make sense.
+void make_finite(Light& light);
+
 // One point of a lamp's extent.
 struct LightSample {
   glm::vec3 position;  // world space, metres; unused for suns

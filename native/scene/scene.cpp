@@ -228,6 +228,7 @@ void Scene::set_lights(std::vector<Light> lights) {
     return !finite(l.object_to_world) || !std::isfinite(l.energy) || !finite(l.color) ||
            l.energy * l.color == glm::vec3(0);
   });
+  for (Light& light : lights) make_finite(light);
   lights_ = std::move(lights);
   changes_.lights = true;
 }

@@ -24,15 +24,16 @@ uint hash(uint x) {
   return (word >> 22u) ^ word;
 }
 
-// Nested (Owen) scrambling of the van der Corput sequence (Laine and Karras 2011): for each `scramble`
+// Nested (Owen) scrambling of the van der Corput sequence by a hash in which low bits only reach
+// higher ones (Laine and Karras 2011, with the constants of Vegdahl 2021): for each `scramble`
 // another sequence over `index`, uniform, stratified over every power of two of indices, and
 // independent of the others. 32 bits of a value in [0, 1).
 uint scrambled_radical_inverse(uint index, uint scramble) {
-  uint x = index + scramble;
-  x ^= x * 0x6c50b47cu;
-  x ^= x * 0xb82f1e52u;
-  x ^= x * 0xc7afe638u;
-  x ^= x * 0x8d22f6e6u;
+  uint x = index ^ (index * 0x3d20adeau);
+  x += scramble;
+  x *= (scramble >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
   return bitfieldReverse(x);
 }
 

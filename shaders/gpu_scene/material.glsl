@@ -135,6 +135,10 @@ void merge_lobe(inout Surface s, float amount, float roughness, float diffuse_ro
   s.normal += amount * normal;
 }
 
+// What is not finite, for whatever reason, counts as nothing.
+float finite(float x) { return abs(x) <= 1.0e30 ? x : 0.0; }
+vec3 finite(vec3 v) { return vec3(finite(v.x), finite(v.y), finite(v.z)); }
+
 // Divides the merged quantities by their weights. Alpha is stochastic, so what a pixel keeps is
 // what the surface does where it is not transparent.
 void finish_surface(Hit hit, inout Surface s) {
@@ -143,6 +147,12 @@ void finish_surface(Hit hit, inout Surface s) {
   s.diffuse_roughness *= inverse;
   s.normal = keep_reflection_above(hit.geometric_normal, hit.view,
                                    safe_normalize(s.normal, hit.normal));
+  s.diffuse = finite(s.diffuse);
+  s.specular = finite(s.specular);
+  s.transmission = finite(s.transmission);
+  s.emission = finite(s.emission);
+  s.roughness = clamp(finite(s.roughness), 0.0, 1.0);
+  s.diffuse_roughness = clamp(finite(s.diffuse_roughness), LAMBERT, 1.0);
 #if ALPHA
   float alpha = 1.0 - luminance(s.transparency);
   float scale = alpha > 0.0 ? 1.0 / alpha : 0.0;

@@ -20,10 +20,8 @@ struct View {
                      // is, so that views draw different random thresholds
   vec4 filtering;    // x: bias on the texture level (log2); y: width of a pixel at distance 1
                      // (perspective) or at any distance (orthographic); z: 1 = perspective
-  vec4 depth;        // from stored depth z to metres along the axis: perspective y / (z + x),
-                     // orthographic y - z * x
 };
-SHARED_ASSERT_SIZE(View, 64 + 16 * 12)
+SHARED_ASSERT_SIZE(View, 64 + 16 * 11)
 
 // What is drawn at once: one material of one instance. The visibility buffer names it by index + 1.
 struct DrawRecord {

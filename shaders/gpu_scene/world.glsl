@@ -23,3 +23,11 @@ vec4 sample_environment_at(sampler2D image, bool srgb, vec3 direction) {
                         ((material_block.z >> min(index, IMAGE_COUNT - 1)) & 1u) != 0u, direction)
 
 #include "generated/world.glsl"
+
+// What is not finite counts as black.
+vec3 finite_world(vec3 direction) {
+  vec3 radiance = evaluate_world(direction);
+  for (int i = 0; i < 3; ++i)
+    if (!(abs(radiance[i]) <= 1.0e30)) radiance[i] = 0.0;
+  return radiance;
+}

@@ -9,5 +9,5 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= bins[material_count].count) return;
   ivec2 pixel = pixel_of(pixels[bins[material_count].first + i]);
-  imageStore(environment, pixel, vec4(evaluate_world(view_direction(vec2(pixel) + 0.5)), 1.0));
+  imageStore(environment, pixel, vec4(finite_world(view_direction(vec2(pixel) + 0.5)), 1.0));
 }

@@ -93,7 +93,8 @@ void main() {
 #endif
   film_add(FILM_COMBINED, pixel, vec4(combined, coverage));
 #ifdef FILM_MOMENTS
-  float brightness = dot(combined, vec3(0.2126, 0.7152, 0.0722));
+  // Squares of more would overflow.
+  float brightness = clamp(dot(combined, vec3(0.2126, 0.7152, 0.0722)), -1.0e15, 1.0e15);
   film_add(FILM_MOMENTS, pixel, vec4(brightness, brightness * brightness, 0.0, 0.0));
 #endif
 #ifdef FILM_NORMAL

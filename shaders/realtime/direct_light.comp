@@ -57,9 +57,10 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
   vec4 stored = textureGather(shadow_maps, vec3((corner + 1.0) / resolution,
                                                 float(face - batch_first_face)));
 
-  // The plane in the map's frame, per unit of the map's coordinates.
+  // The plane in the map's frame, per unit of the map's coordinates; depths are taken relative to
+  // the receiver's, since the normal is not exact enough for the plane's distance from the lamp.
   vec3 n = g.geometric_normal;
-  float height = dot(n, p), along = dot(n, f.axis.xyz);
+  float along = perspective ? dot(n, p) / depth : dot(n, f.axis.xyz);
   vec2 slope = vec2(dot(n, f.x.xyz) * f.half_extent.x * f.half_extent.x,
                     dot(n, f.y.xyz) * f.half_extent.y * f.half_extent.y);
   float texel = f.origin.w * spread;
@@ -72,9 +73,8 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
   const vec2 taps[4] = vec2[4](vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(1.0, 0.0), vec2(0.0, 0.0));
   float lit = 0.0;
   for (int i = 0; i < 4; ++i) {
-    vec2 tap = (corner + taps[i] + 0.5) / resolution * 2.0 - 1.0 + shift;
-    float across = dot(tap, slope);
-    float met = perspective ? height / (along + across) : (height - across) / along;
+    float across = dot((taps[i] - fraction) * (2.0 / resolution), slope);
+    float met = perspective ? depth * along / (along + across) : depth - across / along;
     // A plane seen edge-on is met nowhere.
     if (!(abs(met - depth) <= reach)) met = met > depth ? depth + reach : depth - reach;
     met = max(met - bias, f.depth.z);

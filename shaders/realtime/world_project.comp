@@ -21,7 +21,7 @@ void main() {
     vec3 direction = vec3(sin(theta) * vec2(cos(phi), sin(phi)), cos(theta));
     // The exact solid angle of the texel.
     float weight = 6.28318530718 / float(extent.x) * 2.0 * sin(theta) * sin(0.5 * band);
-    vec3 radiance = evaluate_world(direction) * weight;
+    vec3 radiance = finite_world(direction) * weight;
     float basis[9] = spherical_harmonics(direction);
     for (int k = 0; k < 9; ++k) coefficients[k] += radiance * basis[k];
   }

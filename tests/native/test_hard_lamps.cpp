@@ -1,4 +1,5 @@
 // Hard lamps: on surfaces, inside things, huge, tiny, many, broken.
+#include "json.h"
 #include "support.h"
 
 #include <cmath>
@@ -16,7 +17,7 @@ const gpu_scene::Camera kCamera = perspective({0.3, -3, 2}, {0, 0, 0}, 0.7, 24, 
 
 TestScene floor_with(std::vector<scene::Light> lamps) {
   TestScene s;
-  s.add_object(floor_at(0, 4), {s.add_material(lambert())});
+  s.add_object(floor_at(0, 8), {s.add_material(lambert())});
   s.lights = std::move(lamps);
   return s;
 }
@@ -52,7 +53,8 @@ TEST(HardLamps, InsideABoxLightItsInsideAlone) {
   const Picture outside = render(s, r);
   for (float v : outside[Pass::kDiffDir]) ASSERT_EQ(v, 0);
   r.camera = perspective({0.1, 0, 0.5}, {-1, 0.2, 0.5}, 1.2, 24, 24);
-  for (float v : render(s, r)[Pass::kDiffDir]) ASSERT_GT(v, 0);
+  const Picture inside = render(s, r);
+  for (float v : inside[Pass::kDiffDir]) ASSERT_GT(v, 0);
 }
 
 TEST(HardLamps, WithoutSizeShine) {
@@ -75,9 +77,7 @@ TEST(HardLamps, OfHugeEnergyStayFinite) {
     for (scene::Light& lamp : lamps) lamp.energy = energy;
     for (uint32_t samples : {1u, 8u}) {
       const Picture p = render(floor_with(lamps), request(kCamera, {Pass::kDiffDir}, samples));
-      if (p.stats.estimated_error) {
-        EXPECT_TRUE(std::isfinite(*p.stats.estimated_error)) << energy;
-      }
+      EXPECT_NO_THROW(parse_json(p.stats.to_json())) << energy;
     }
   }
   TestScene bright = floor_with({});
@@ -116,10 +116,7 @@ TEST(HardLamps, FarAwayAreSuns) {
   // 10 km above a floor of 4 m: the irradiance of a point at that distance, without self-shading.
   const double watts = 4 * kPi * 1e8;
   const Picture p = render(floor_with({point({0, 0, 1e4f}, float(watts))}), request(kCamera, {Pass::kDiffDir}));
-  for (size_t i = 0; i < p[Pass::kDiffDir].size(); i += 3)
-    if (p[Pass::kDiffDir][i] > 0 || i == 0) {
-      ASSERT_NEAR(p[Pass::kDiffDir][i], 1 / kPi, 1e-4);
-    }
+  for (float v : p[Pass::kDiffDir]) ASSERT_NEAR(v, 1 / kPi, 1e-4);
 }
 
 TEST(HardLamps, ManyThousandsAddUp) {

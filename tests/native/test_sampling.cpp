@@ -11,7 +11,6 @@ namespace {
 
 using film::blackman_harris_offset;
 using film::sample_point;
-using film::sample_value;
 
 double window(double x) {  // over -1 .. 1
   const double t = kPi * (x + 1);
@@ -72,8 +71,6 @@ TEST(SamplePoints, LieInTheUnitSquare) {
   for (uint32_t i = 0; i < 100000; i += 7) {
     const glm::vec2 p = sample_point(i, 3, 1);
     ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
-    const float v = sample_value(i, 3, 1);
-    ASSERT_TRUE(v >= 0 && v < 1);
   }
 }
 
@@ -115,18 +112,6 @@ TEST(SamplePoints, HaveALowDiscrepancyAtEveryLength) {
       const double log = std::log(double(n));
       EXPECT_LT(star_discrepancy(n, 9, dimension), 0.4 * log * log / n + 1.0 / n) << n;
     }
-}
-
-TEST(SampleValues, FillTheLineEvenlyAtEveryLength) {
-  // The golden ratio's recurrence leaves no gap wider than about 1.9 / n (three distance theorem).
-  for (uint32_t n : {2u, 5u, 16u, 100u, 1000u}) {
-    std::vector<double> values;
-    for (uint32_t i = 0; i < n; ++i) values.push_back(sample_value(i, 4, 2));
-    std::sort(values.begin(), values.end());
-    double gap = 1 - values.back() + values.front();
-    for (size_t i = 1; i < values.size(); ++i) gap = std::max(gap, values[i] - values[i - 1]);
-    EXPECT_LT(gap, 2.0 / n) << n;
-  }
 }
 
 TEST(SamplePoints, DimensionsAndSeedsAreShiftedApart) {

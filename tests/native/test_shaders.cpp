@@ -115,6 +115,11 @@ class Shaders : public ::testing::Test {
     for (int pass = 0; pass < film::kPassCount; ++pass)
       for (int bits : {0, 31}) with_film(film::PassSet().set(size_t(pass)), false, bits);
 
+    for (bool moments : {false, true}) {
+      film.start(4, 4, film::PassSet().set(size_t(film::Pass::kDepth)), moments);
+      add(realtime::depth_program(film));
+    }
+
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
       gpu_scene::GpuShading world;
       world.code = code;

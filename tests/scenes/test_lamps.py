@@ -116,11 +116,6 @@ def test_surfaces_under_a_sun(scene):
 
 
 @pytest.mark.slow
-def test_the_atrium():
-    check("atrium", (240, 135))
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("scene", lamps.SHARED_SCENES)
 def test_shared_scenes(scene):
     if not renders.SHARED.joinpath(f"{scene}.blend").is_file():
