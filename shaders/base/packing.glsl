@@ -24,17 +24,23 @@ uint hash(uint x) {
   return (word >> 22u) ^ word;
 }
 
-// Nested (Owen) scrambling of the van der Corput sequence by a hash in which low bits only reach
-// higher ones (Laine and Karras 2011, with the constants of Vegdahl 2021): for each `scramble`
-// another sequence over `index`, uniform, stratified over every power of two of indices, and
-// independent of the others. 32 bits of a value in [0, 1).
-uint scrambled_radical_inverse(uint index, uint scramble) {
-  uint x = index ^ (index * 0x3d20adeau);
-  x += scramble;
-  x *= (scramble >> 16) | 1u;
+// A hash in which low bits only reach higher ones (Laine and Karras 2011, with the constants of
+// Vegdahl 2021): applied to reversed bits it is nested (Owen) scrambling.
+uint scramble_upwards(uint x, uint seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return bitfieldReverse(x);
+  return x;
+}
+
+// The van der Corput sequence with its indices shuffled and its values scrambled, both nested: for
+// each `seed` another sequence, stratified over every power of two of indices, and independent of
+// the others. 32 bits of a value in [0, 1).
+uint shuffled_radical_inverse(uint index, uint seed) {
+  index = bitfieldReverse(scramble_upwards(bitfieldReverse(index), seed));
+  return bitfieldReverse(scramble_upwards(index, hash(seed)));
 }
 
 // Uniform in [0, 1), from the 24 bits that a float can hold.

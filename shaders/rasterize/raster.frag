@@ -23,8 +23,8 @@ void main() {
   if (threshold < 0.0) {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     uint layer = hash(triangle + hash(drawn.y + hash(uint(view.size.w) + floatBitsToUint(view.alpha.y))));
-    threshold = unit_float(scrambled_radical_inverse(uint(view.size.z),
-                                                     hash(pixel.x + hash(pixel.y + layer))));
+    threshold = unit_float(shuffled_radical_inverse(uint(view.size.z),
+                                                    hash(pixel.x + hash(pixel.y + layer))));
   }
   if (1.0 - luminance(surface.transparency) <= threshold) discard;
 #endif

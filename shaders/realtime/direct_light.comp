@@ -43,7 +43,16 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
   uint face = light.shadow + (light.faces == 6u ? cube_face(from_light) : 0u);
   ShadowFace f = shadow_faces[face];
   bool perspective = f.axis.w > 0.5;
-  vec3 p = g.position + g.smooth_normal * g.bulge - f.origin.xyz;
+  vec3 n = g.geometric_normal;
+  float cosine = dot(n, to_light);
+  // Near the terminator the look-up moves to the smooth surface that the normals describe; the
+  // range over which it does is Cycles'.
+  float smooth_cosine = dot(g.smooth_normal, to_light);
+  float amount = smooth_cosine < 0.1 ? 2.0 - (cosine + smooth_cosine) / 0.1 : 1.0 - cosine / 0.1;
+  vec3 p = g.position + g.smooth_normal * (g.bulge * clamp(amount, 0.0, 1.0)) - f.origin.xyz;
+  // Facets that see the light edge-on stand in each other's way: lift them off by a texel.
+  float distance_along = perspective ? dot(p, f.axis.xyz) : 1.0;
+  p += g.smooth_normal * (f.origin.w * distance_along * clamp(1.0 - 50.0 * cosine, 0.0, 1.0));
   float depth = dot(p, f.axis.xyz);
   float spread = perspective ? depth : 1.0;
   if (spread <= 0.0) return 1.0;
@@ -59,13 +68,11 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
 
   // The plane in the map's frame, per unit of the map's coordinates; depths are taken relative to
   // the receiver's, since the normal is not exact enough for the plane's distance from the lamp.
-  vec3 n = g.geometric_normal;
   float along = perspective ? dot(n, p) / depth : dot(n, f.axis.xyz);
   vec2 slope = vec2(dot(n, f.x.xyz) * f.half_extent.x * f.half_extent.x,
                     dot(n, f.y.xyz) * f.half_extent.y * f.half_extent.y);
   float texel = f.origin.w * spread;
-  float cosine = abs(dot(n, to_light));
-  float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 1.0e-6);
+  float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1.0e-6);
   float magnitude = max(max(abs(p.x), abs(p.y)), abs(p.z));
   float bias = texel * (1.0 + 0.5 * min(tangent, 4.0)) + 1.0e-6 * magnitude;
   float reach = STEEPEST * texel;
@@ -78,7 +85,8 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
     // A plane seen edge-on is met nowhere.
     if (!(abs(met - depth) <= reach)) met = met > depth ? depth + reach : depth - reach;
     met = max(met - bias, f.depth.z);
-    float z = perspective ? f.depth.x / met + f.depth.y : f.depth.x * met + f.depth.y;
+    // The plane may go on behind the far end, where the map says that nothing is.
+    float z = max(perspective ? f.depth.x / met + f.depth.y : f.depth.x * met + f.depth.y, 0.0);
     vec2 weight = mix(1.0 - fraction, fraction, taps[i]);
     lit += weight.x * weight.y * (z >= stored[i] ? 1.0 : 0.0);
   }

@@ -9,11 +9,14 @@ synchronisation, BVH and the first sample of its paths; for Panoptes (Real-time)
 and light. Both spend the same on Blender's side of it (evaluating the scene, storing the result). Each
 engine gets processes of its own, in turn, since a process keeps what its first render made:
 
-    first    the first render in a fresh process: for Panoptes also the GL context and compiling its programs
-    opened   the file opened again in the same process: everything is read, sent and lit anew, programs stay
+    first    the first render in a fresh process: everything is read, sent and lit; for Panoptes also the GL
+             context and the compiling of its programs
+    opened   the file opened again in the same process: Panoptes still has its programs, and images whose
+             bytes are the same stay on the GPU
     again    the same file once more
 
-The bar (of the "opened" row) is 2 on Sponza at 960x540: twice Cycles' time to synchronise and trace one sample.
+Processor time (of all threads) is shown beside it: unlike wall time it hardly depends on what else the machine does.
+The bar (wall, "first" row) is 2 on Sponza at 960x540: twice Cycles' time to synchronise and trace one sample.
 """
 
 import argparse
@@ -76,12 +79,12 @@ def prepare(options):
 
 
 def measure(scene):
-    """Seconds of one render."""
-    began = time.perf_counter()
+    """Seconds of one render, by the clock and of the processor."""
+    began, used = time.perf_counter(), time.process_time()
     bpy.ops.render.render()
-    seconds = time.perf_counter() - began
+    seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
     stats = json.loads(scene.panoptes.last_stats) if scene.render.engine == "PANOPTES" and scene.panoptes.last_stats else {}
-    return {"seconds": seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms") if key in stats}}
+    return {"seconds": seconds, "cpu_seconds": cpu_seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms") if key in stats}}
 
 
 def run_child(options):
@@ -121,16 +124,19 @@ def main():
         # Taking turns spreads whatever else the machine does over both.
         for engine in ENGINES if turn % 2 == 0 else reversed(ENGINES):
             runs[engine].append(child(engine, options))
-    medians = {row: {engine: statistics.median(run[row]["seconds"] for run in runs[engine]) for engine in ENGINES} for row in ROWS}
-    ratios = {row: medians[row]["PANOPTES"] / medians[row]["CYCLES"] for row in ROWS}
+    medians = {kind: {row: {engine: statistics.median(run[row][kind] for run in runs[engine]) for engine in ENGINES}
+                      for row in ROWS} for kind in ("seconds", "cpu_seconds")}
+    ratios = {kind: {row: found["PANOPTES"] / found["CYCLES"] for row, found in rows.items()} for kind, rows in medians.items()}
     if options.json:
         print(json.dumps({"scene": options.scene, "size": [options.width, options.height], "samples": options.samples,
                           "medians": medians, "ratios": ratios, "runs": runs}, indent=1))
         return
     print(f"{Path(options.scene).name} at {options.width}x{options.height}, median of {options.repeat}, seconds")
-    print(f"{'':8}{'Cycles':>10}{'Panoptes':>10}{'ratio':>8}")
+    print(f"{'':8}{'wall':>24}{'':4}{'processor':>28}")
+    print(f"{'':8}" + f"{'Cycles':>10}{'Panoptes':>10}{'ratio':>8}    " * 2)
     for row in ROWS:
-        print(f"{row:8}{medians[row]['CYCLES']:10.3f}{medians[row]['PANOPTES']:10.3f}{ratios[row]:8.2f}")
+        print(f"{row:8}" + "".join(f"{medians[kind][row]['CYCLES']:10.3f}{medians[kind][row]['PANOPTES']:10.3f}"
+                                   f"{ratios[kind][row]:8.2f}    " for kind in medians))
 
 
 main()

@@ -10,10 +10,10 @@ struct StillLife {
   gpu_scene::Camera camera;
 };
 
-// A floor, a box and a smooth sphere under a sun, a point and a spot lamp. All lengths are multiples
-// of `scale`; `origin` moves the world. Coordinates lie on a grid of 1/8 for a scale of 1.
-inline StillLife still_life(float scale = 1, const glm::dvec3& origin = {0, 0, 0},
-                            int size = 48) {
+// A floor, a box and a smooth sphere under a sun, a point and a spot lamp. All lengths are
+// multiples of `scale`; `origin` moves the world. Coordinates lie on a grid of 1/8 for a scale
+// of 1.
+inline StillLife still_life(float scale = 1, const glm::dvec3& origin = {0, 0, 0}, int size = 48) {
   StillLife life;
   TestScene& s = life.scene;
   const glm::vec3 o(origin);

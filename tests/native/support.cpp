@@ -9,7 +9,7 @@
 
 namespace panoptes::test {
 
-// --- geometry ---------------------------------------------------------------------------------------
+// --- geometry ------------------------------------------------------------------------------------
 
 scene::MeshInput Geometry::input(const std::string& name) const {
   scene::MeshInput in;
@@ -26,9 +26,7 @@ scene::MeshInput Geometry::input(const std::string& name) const {
   return in;
 }
 
-scene::Mesh Geometry::mesh(const std::string& name) const {
-  return scene::make_mesh(input(name));
-}
+scene::Mesh Geometry::mesh(const std::string& name) const { return scene::make_mesh(input(name)); }
 
 Geometry& Geometry::add(const Geometry& other, int slot) {
   const int first_vertex = int(positions.size()), first_loop = int(normals.size());
@@ -99,17 +97,16 @@ Geometry sphere(const glm::vec3& center, float radius, int segments, bool smooth
   return g;
 }
 
-// --- materials --------------------------------------------------------------------------------------
+// --- materials -----------------------------------------------------------------------------------
 
 const char* const kLambert =
     "void evaluate_material(const Hit hit, inout Surface surface) {\n"
     "  closure_diffuse(surface, vec3(1.0), param(0).rgb, 0.0, hit.normal);\n"
     "}\n";
 
-const char* const kEmit =
-    "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-    "  closure_emission(surface, vec3(1.0), param(0).rgb);\n"
-    "}\n";
+const char* const kEmit = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                          "  closure_emission(surface, vec3(1.0), param(0).rgb);\n"
+                          "}\n";
 
 scene::Material material(const std::string& code, std::vector<glm::vec4> params,
                          scene::MaterialFacts facts) {
@@ -125,12 +122,11 @@ scene::Material emitter(const glm::vec3& radiance) {
 }
 
 scene::Material alpha_card(const glm::vec4& color_alpha) {
-  return material(
-      "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-      "  closure_diffuse(surface, vec3(param(0).a), param(0).rgb, 0.0, hit.normal);\n"
-      "  closure_transparent(surface, vec3(1.0 - param(0).a), vec3(1.0));\n"
-      "}\n",
-      {color_alpha}, {.alpha = true, .glossy = false});
+  return material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                  "  closure_diffuse(surface, vec3(param(0).a), param(0).rgb, 0.0, hit.normal);\n"
+                  "  closure_transparent(surface, vec3(1.0 - param(0).a), vec3(1.0));\n"
+                  "}\n",
+                  {color_alpha}, {.alpha = true, .glossy = false});
 }
 
 scene::World world(const std::string& code, std::vector<glm::vec4> params) {
@@ -148,7 +144,7 @@ scene::World constant_world(const glm::vec3& radiance) {
   return w;
 }
 
-// --- lamps ------------------------------------------------------------------------------------------
+// --- lamps ---------------------------------------------------------------------------------------
 
 glm::mat4 lamp_matrix(const glm::vec3& position, const glm::vec3& direction) {
   const glm::vec3 z = -glm::normalize(direction);
@@ -196,7 +192,7 @@ scene::Light area(const glm::vec3& position, const glm::vec3& direction, float w
   return l;
 }
 
-// --- cameras ----------------------------------------------------------------------------------------
+// --- cameras -------------------------------------------------------------------------------------
 
 namespace {
 
@@ -245,7 +241,7 @@ glm::dvec3 on_plane(const Ray& ray, const glm::dvec3& point, const glm::dvec3& n
   return ray.at(glm::dot(point - ray.origin, n) / glm::dot(ray.direction, n));
 }
 
-// --- rendering --------------------------------------------------------------------------------------
+// --- rendering -----------------------------------------------------------------------------------
 
 Id TestScene::add_material(scene::Material m) {
   materials.push_back(std::move(m));
@@ -258,13 +254,14 @@ Id TestScene::add_image(scene::Image image) {
 }
 
 Id TestScene::add_object(const Geometry& geometry, const std::vector<Id>& slots,
-                     const glm::mat4& object_to_world) {
+                         const glm::mat4& object_to_world) {
   meshes.push_back(geometry.mesh());
   add_instance(Id(meshes.size()), slots, object_to_world);
   return Id(meshes.size());
 }
 
-void TestScene::add_instance(Id mesh, const std::vector<Id>& slots, const glm::mat4& object_to_world) {
+void TestScene::add_instance(Id mesh, const std::vector<Id>& slots,
+                             const glm::mat4& object_to_world) {
   instances.push_back({mesh, object_to_world, int(table.size())});
   table.insert(table.end(), slots.begin(), slots.end());
 }
@@ -335,7 +332,7 @@ Picture render(const TestScene& setup, const engine::RenderRequest& request) {
   return render(request);
 }
 
-// --- judging ----------------------------------------------------------------------------------------
+// --- judging -------------------------------------------------------------------------------------
 
 void Worst::compare(double actual, double expected, double floor, int x, int y) {
   ++count_;

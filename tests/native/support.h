@@ -18,7 +18,7 @@ using scene::Id;
 
 constexpr double kPi = 3.14159265358979323846;
 
-// --- geometry ---------------------------------------------------------------------------------------
+// --- geometry ------------------------------------------------------------------------------------
 
 // A mesh as Blender would hand it over; loops carry normals, UVs ("uv") and colours ("color").
 struct Geometry {
@@ -42,7 +42,7 @@ Geometry box(const glm::vec3& center, const glm::vec3& half);
 // Latitude-longitude sphere; smooth normals point away from the centre.
 Geometry sphere(const glm::vec3& center, float radius, int segments, bool smooth = true);
 
-// --- materials --------------------------------------------------------------------------------------
+// --- materials -----------------------------------------------------------------------------------
 
 // Codes: one Lambert lobe of colour param(0), or emission of param(0).
 extern const char* const kLambert;
@@ -56,7 +56,7 @@ scene::Material alpha_card(const glm::vec4& color_alpha);
 scene::World constant_world(const glm::vec3& radiance);
 scene::World world(const std::string& code, std::vector<glm::vec4> params = {});
 
-// --- lamps ------------------------------------------------------------------------------------------
+// --- lamps ---------------------------------------------------------------------------------------
 
 glm::mat4 lamp_matrix(const glm::vec3& position, const glm::vec3& direction);
 scene::Light sun(const glm::vec3& direction, float strength);
@@ -66,7 +66,7 @@ scene::Light spot(const glm::vec3& position, const glm::vec3& direction, float w
 scene::Light area(const glm::vec3& position, const glm::vec3& direction, float watts,
                   scene::AreaShape shape, float size_x, float size_y);
 
-// --- cameras ----------------------------------------------------------------------------------------
+// --- cameras -------------------------------------------------------------------------------------
 
 gpu_scene::Camera perspective(const glm::dvec3& eye, const glm::dvec3& target, double fov_y,
                               int width, int height, double near_depth = 0.01,
@@ -87,7 +87,7 @@ inline Ray pixel_ray(const gpu_scene::Camera& camera, int x, int y) {
 // Where that ray meets the plane through `point` with normal `n`.
 glm::dvec3 on_plane(const Ray& ray, const glm::dvec3& point, const glm::dvec3& n);
 
-// --- rendering --------------------------------------------------------------------------------------
+// --- rendering -----------------------------------------------------------------------------------
 
 struct TestScene {
   std::vector<scene::Mesh> meshes;  // ids are 1 + index, here and below
@@ -130,7 +130,7 @@ Picture render(const engine::RenderRequest& request);
 // Installs `setup` first.
 Picture render(const TestScene& setup, const engine::RenderRequest& request);
 
-// --- judging ----------------------------------------------------------------------------------------
+// --- judging -------------------------------------------------------------------------------------
 
 // Remembers the worst of many comparisons, so that a picture that is wrong gives one message.
 class Worst {
@@ -150,7 +150,7 @@ class Worst {
 double relative_rmse(const std::vector<float>& a, const std::vector<float>& b);
 double mean(const std::vector<float>& values);
 
-#define EXPECT_WORST_BELOW(worst, tolerance) \
+#define EXPECT_WORST_BELOW(worst, tolerance)                         \
   EXPECT_TRUE((worst).count() > 0 && (worst).error() <= (tolerance)) \
       << (worst).where() << ", " << (tolerance) << " allowed "
 

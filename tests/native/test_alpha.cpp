@@ -56,7 +56,8 @@ TEST(Alpha, ManySamplesShowTheCoverage) {
 TEST(Alpha, LayersBehindEachOtherMultiply) {
   // Two cards of one half: a quarter of the floor is seen, in each pixel alike.
   const Picture p = render(cards({0.5f, 0.5f}), still(256));
-  expect_share(p, Pass::kDiffCol, 1, 0.25, 4.5 * binomial(0.25, 256), 4 * binomial(0.25, 256 * 1024));
+  expect_share(p, Pass::kDiffCol, 1, 0.25, 4.5 * binomial(0.25, 256),
+               4 * binomial(0.25, 256 * 1024));
 }
 
 TEST(Alpha, OneSampleHasOneThreshold) {
@@ -119,14 +120,14 @@ TEST(Alpha, ShadowsOfSeenThroughCardsStayIndependent) {
 TEST(Alpha, EmissionIsScaledByIt) {
   TestScene s;
   s.add_object(floor_at(1, 1),
-               {s.add_material(material(
-                   "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-                   "  Principled p = principled_defaults(hit);\n"
-                   "  p.alpha = 0.5;\n"
-                   "  p.emission = vec3(2.0, 4.0, 8.0);\n"
-                   "  closure_principled_v3(surface, vec3(1.0), p);\n"
-                   "}\n",
-                   {}, {.alpha = true, .emission = true, .glossy = true}))});
+               {s.add_material(
+                   material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                            "  Principled p = principled_defaults(hit);\n"
+                            "  p.alpha = 0.5;\n"
+                            "  p.emission = vec3(2.0, 4.0, 8.0);\n"
+                            "  closure_principled_v3(surface, vec3(1.0), p);\n"
+                            "}\n",
+                            {}, {.alpha = true, .emission = true, .glossy = true}))});
   const Picture p = render(s, still(64, {Pass::kEmit, Pass::kDiffCol, Pass::kEnv}));
   expect_share(p, Pass::kEmit, 0, 1, 8 * binomial(0.5, 64), 0.02);
   expect_share(p, Pass::kEmit, 2, 4, 32 * binomial(0.5, 64), 0.08);
@@ -156,11 +157,12 @@ TEST(Alpha, DepthIsThatOfTheFirstLayerFromOneHalfOn) {
 TEST(Alpha, TransparencyHasNoColourInShadows) {
   TestScene s;
   s.add_object(floor_at(0, 2), {s.add_material(lambert())});
-  s.add_object(floor_at(1, 2), {s.add_material(material(
-                   "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-                   "  closure_transparent(surface, vec3(1.0), vec3(1.0));\n"
-                   "}\n",
-                   {}, {.alpha = true, .glossy = false}))});
+  s.add_object(floor_at(1, 2),
+               {s.add_material(
+                   material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                            "  closure_transparent(surface, vec3(1.0), vec3(1.0));\n"
+                            "}\n",
+                            {}, {.alpha = true, .glossy = false}))});
   s.lights = {sun({0, 0, -1}, float(kPi))};
   const Picture p = render(s, still(4, {Pass::kDiffDir}));
   expect_share(p, Pass::kDiffDir, 0, 1, 1e-5, 1e-5);
@@ -172,7 +174,8 @@ TEST(Alpha, MixesWithOpaqueObjectsOfTheSameMesh) {
   Geometry g = quad({-0.5f, 0, 1}, {0.5f, 0, 0}, {0, 1, 0});
   g.add(quad({0.5f, 0, 1}, {0.5f, 0, 0}, {0, 1, 0}), 1);
   s.add_object(floor_at(0, 2), {s.add_material(lambert({0, 0, 1}))});
-  s.add_object(g, {s.add_material(lambert({1, 0, 0})), s.add_material(alpha_card({0, 1, 0, 0.7f}))});
+  s.add_object(g,
+               {s.add_material(lambert({1, 0, 0})), s.add_material(alpha_card({0, 1, 0, 0.7f}))});
   s.add_instance(2, {1, 3},
                  glm::mat4(glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0),
                            glm::vec4(0, 0, 1, 1)));

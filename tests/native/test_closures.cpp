@@ -45,8 +45,8 @@ std::string principled(const std::string& version, const std::string& settings) 
 
 TEST(Closures, LambertSendsItsAlbedoBack) {
   const glm::dvec3 albedo(0.8, 0.2, 0.05);
-  const Picture p =
-      render(floor_of(lambert(glm::vec3(albedo))), request(kCamera, {Pass::kDiffDir, Pass::kDiffCol}));
+  const Picture p = render(floor_of(lambert(glm::vec3(albedo))),
+                           request(kCamera, {Pass::kDiffDir, Pass::kDiffCol}));
   Worst color, light, combined;
   for (int y = 0; y < p.height; ++y)
     for (int x = 0; x < p.width; ++x)
@@ -63,7 +63,8 @@ TEST(Closures, LambertSendsItsAlbedoBack) {
 TEST(Closures, PrincipledBeforeFourIsBurley) {
   for (float roughness : {0.0f, 0.5f, 1.0f}) {
     scene::Material m = material(
-        principled("3", "p.base_color = vec3(0.6);\n p.specular = 0.0;\n p.roughness = param(0).x;\n"),
+        principled("3",
+                   "p.base_color = vec3(0.6);\n p.specular = 0.0;\n p.roughness = param(0).x;\n"),
         {glm::vec4(roughness)});
     const Picture p = render(floor_of(m), request(kCamera, {Pass::kDiffDir, Pass::kDiffCol}));
     Worst worst, color;
@@ -95,19 +96,20 @@ TEST(Closures, PrincipledFromFourIsLambert) {
 
 TEST(Closures, MetalAndGlassLeaveNoDiffuseColour) {
   // DiffCol = base * (1 - metallic) * (1 - transmission); DiffDir stays the light alone.
-  for (const auto& [metallic, transmission] : {std::pair(0.5f, 0.0f), {0.0f, 0.25f}, {0.5f, 0.5f}}) {
-    scene::Material m = material(
-        principled("4", "p.base_color = vec3(0.8);\n p.metallic = param(0).x;\n"
-                        "p.transmission = param(0).y;\n p.specular = 0.0;\n"),
-        {glm::vec4(metallic, transmission, 0, 0)}, {.glossy = true, .transmission = true});
+  for (const auto& [metallic, transmission] :
+       {std::pair(0.5f, 0.0f), {0.0f, 0.25f}, {0.5f, 0.5f}}) {
+    scene::Material m =
+        material(principled("4", "p.base_color = vec3(0.8);\n p.metallic = param(0).x;\n"
+                                 "p.transmission = param(0).y;\n p.specular = 0.0;\n"),
+                 {glm::vec4(metallic, transmission, 0, 0)}, {.glossy = true, .transmission = true});
     const Picture p = render(floor_of(m), request(kCamera, {Pass::kDiffDir, Pass::kDiffCol}));
     const double due = 0.8 * (1 - metallic) * (1 - transmission);
     EXPECT_NEAR(p.value(Pass::kDiffCol, 16, 12), due, due * 2 * kHalf);
     EXPECT_NEAR(p.value(Pass::kDiffDir, 16, 12), kToSun.z, kRounding);
   }
-  const Picture p = render(
-      floor_of(material(principled("3", "p.metallic = 1.0;\n"), {}, {.glossy = true})),
-      request(kCamera, {Pass::kDiffDir, Pass::kDiffCol}));
+  const Picture p =
+      render(floor_of(material(principled("3", "p.metallic = 1.0;\n"), {}, {.glossy = true})),
+             request(kCamera, {Pass::kDiffDir, Pass::kDiffCol}));
   EXPECT_EQ(p.value(Pass::kDiffCol, 16, 12), 0);
   EXPECT_EQ(p.value(Pass::kDiffDir, 16, 12), 0);
 }
@@ -116,18 +118,18 @@ double ggx(double nl, double nv, double nh, double alpha) {
   const double a2 = alpha * alpha;
   const double t = nh * nh * (a2 - 1) + 1;
   const double d = a2 / (kPi * t * t);
-  const double v = 0.5 / (nl * std::sqrt(a2 + (1 - a2) * nv * nv) +
-                          nv * std::sqrt(a2 + (1 - a2) * nl * nl));
+  const double v =
+      0.5 / (nl * std::sqrt(a2 + (1 - a2) * nv * nv) + nv * std::sqrt(a2 + (1 - a2) * nl * nl));
   return d * v;
 }
 
 TEST(Closures, AWhiteMirrorIsGgxWithSmithMasking) {
   for (float roughness : {0.3f, 0.7f, 1.0f}) {
-    scene::Material m = material(
-        "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-        "  closure_glossy(surface, vec3(1.0), vec3(1.0), param(0).x, hit.normal);\n"
-        "}\n",
-        {glm::vec4(roughness)}, {.glossy = true});
+    scene::Material m =
+        material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                 "  closure_glossy(surface, vec3(1.0), vec3(1.0), param(0).x, hit.normal);\n"
+                 "}\n",
+                 {glm::vec4(roughness)}, {.glossy = true});
     const Picture p = render(floor_of(m), request(kCamera, {Pass::kGlossDir, Pass::kGlossCol}));
     Worst worst;
     const double alpha = double(roughness) * roughness;
@@ -144,9 +146,9 @@ TEST(Closures, AWhiteMirrorIsGgxWithSmithMasking) {
 }
 
 TEST(Closures, NothingReflectsWithoutSpecular) {
-  const Picture p = render(
-      floor_of(material(principled("3", "p.specular = 0.0;\n"), {}, {.glossy = true})),
-      request(kCamera, {Pass::kGlossDir, Pass::kGlossCol}));
+  const Picture p =
+      render(floor_of(material(principled("3", "p.specular = 0.0;\n"), {}, {.glossy = true})),
+             request(kCamera, {Pass::kGlossDir, Pass::kGlossCol}));
   for (float v : p[Pass::kGlossDir]) ASSERT_EQ(v, 0);
   for (float v : p[Pass::kGlossCol]) ASSERT_EQ(v, 0);
 }
@@ -157,11 +159,11 @@ TEST(Closures, ReflectionNeverExceedsTheLightThatArrives) {
   const gpu_scene::Camera camera = orthographic({0, -3, 2}, {0, 0, 0}, 0.01, 1, 1);
   const glm::dvec3 v = glm::normalize(glm::dvec3(0, -3, 2));
   for (float roughness : {0.25f, 0.6f, 1.0f}) {
-    TestScene s = floor_of(material(
-        "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-        "  closure_glossy(surface, vec3(1.0), vec3(1.0), param(0).x, hit.normal);\n"
-        "}\n",
-        {glm::vec4(roughness)}, {.glossy = true}));
+    TestScene s = floor_of(
+        material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                 "  closure_glossy(surface, vec3(1.0), vec3(1.0), param(0).x, hit.normal);\n"
+                 "}\n",
+                 {glm::vec4(roughness)}, {.glossy = true}));
     s.lights.clear();
     const int rings = 32, sectors = 64;
     double due = 0;
@@ -184,16 +186,16 @@ TEST(Closures, ReflectionNeverExceedsTheLightThatArrives) {
 }
 
 TEST(Closures, MixedColoursAddUp) {
-  const Picture p = render(
-      floor_of(material(
-          "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-          "  closure_diffuse(surface, vec3(0.25), vec3(1.0, 0.0, 0.0), 0.0, hit.normal);\n"
-          "  closure_diffuse(surface, vec3(0.75), vec3(0.0, 1.0, 0.0), 0.0, hit.normal);\n"
-          "  closure_emission(surface, vec3(0.5), vec3(3.0));\n"
-          "  closure_emission(surface, vec3(1.0), vec3(0.25));\n"
-          "}\n",
-          {}, {.emission = true, .glossy = false})),
-      request(kCamera, {Pass::kDiffCol, Pass::kEmit}));
+  const Picture p =
+      render(floor_of(material(
+                 "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                 "  closure_diffuse(surface, vec3(0.25), vec3(1.0, 0.0, 0.0), 0.0, hit.normal);\n"
+                 "  closure_diffuse(surface, vec3(0.75), vec3(0.0, 1.0, 0.0), 0.0, hit.normal);\n"
+                 "  closure_emission(surface, vec3(0.5), vec3(3.0));\n"
+                 "  closure_emission(surface, vec3(1.0), vec3(0.25));\n"
+                 "}\n",
+                 {}, {.emission = true, .glossy = false})),
+             request(kCamera, {Pass::kDiffCol, Pass::kEmit}));
   EXPECT_EQ(p.rgb(Pass::kDiffCol, 16, 12), glm::dvec3(0.25, 0.75, 0));
   EXPECT_EQ(p.rgb(Pass::kEmit, 16, 12), glm::dvec3(1.75));
 }

@@ -10,7 +10,9 @@ using film::Pass;
 
 class Edits : public ::testing::Test {
  protected:
-  Edits() : life(still_life()), r(request(life.camera, {Pass::kDiffCol, Pass::kDiffDir, Pass::kDepth})) {
+  Edits()
+      : life(still_life()),
+        r(request(life.camera, {Pass::kDiffCol, Pass::kDiffDir, Pass::kDepth})) {
     const uint8_t texel[4] = {255, 128, 0, 255};
     life.scene.add_image(scene::make_image("i", 1, 1, std::span<const uint8_t>(texel), false,
                                            scene::AlphaMode::kNone));
@@ -36,7 +38,8 @@ class Edits : public ::testing::Test {
     const Cost start{c.programs, c.uploaded_bytes, c.textures};
     shared_engine().edit(change);
     after = render(r);
-    return {c.programs - start.programs, c.uploaded_bytes - start.bytes, c.textures - start.textures};
+    return {c.programs - start.programs, c.uploaded_bytes - start.bytes,
+            c.textures - start.textures};
   }
   // A pixel where the red box is seen.
   std::pair<int, int> find_box() const {
@@ -46,7 +49,9 @@ class Edits : public ::testing::Test {
           return {x, y};
     throw Error("the box is not in the picture: mend the test");
   }
-  glm::dvec3 box_color() const { return after.rgb(Pass::kDiffCol, box_pixel.first, box_pixel.second); }
+  glm::dvec3 box_color() const {
+    return after.rgb(Pass::kDiffCol, box_pixel.first, box_pixel.second);
+  }
   bool same(Pass pass) const { return after[pass] == before[pass]; }
 
   // Views of the camera and of the shadow maps, lists of lamps and faces: what any frame sends.
@@ -75,9 +80,8 @@ TEST_F(Edits, AMovedCameraUploadsABlock) {
 }
 
 TEST_F(Edits, ADraggedSliderIsAnUploadAndNeverACompile) {
-  const Cost cost = cost_of([](scene::Scene& scene) {
-    scene.set_material_params(2, {glm::vec4(0.5f, 1, 1, 1)});
-  });
+  const Cost cost = cost_of(
+      [](scene::Scene& scene) { scene.set_material_params(2, {glm::vec4(0.5f, 1, 1, 1)}); });
   EXPECT_EQ(cost.programs, 0);
   EXPECT_EQ(cost.textures, 0);
   EXPECT_LT(cost.bytes, kFrameBytes);
@@ -168,9 +172,8 @@ TEST_F(Edits, RemovedAndAddedObjectsAreShown) {
   EXPECT_TRUE(same(Pass::kCombined));
   cost_of([&](scene::Scene& scene) { scene.set_instances({}, {}); });
   for (float d : after[Pass::kDepth]) ASSERT_EQ(d, 1e10f);
-  cost_of([&](scene::Scene& scene) {
-    scene.set_instances(life.scene.instances, life.scene.table);
-  });
+  cost_of(
+      [&](scene::Scene& scene) { scene.set_instances(life.scene.instances, life.scene.table); });
   EXPECT_TRUE(same(Pass::kCombined));
 }
 

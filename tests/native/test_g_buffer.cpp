@@ -48,8 +48,8 @@ TEST(GBuffer, AThousandInstancesOfHundredsOfMaterialsKeepTheirColours) {
   for (int i = 0; i < 1024; ++i) {
     const int x = i % 32 * 2, y = i / 32 * 2;
     // The diagonal runs from the lower left to the upper right: (1, 0) is below it, (0, 1) above.
-    ASSERT_EQ(p.rgb(Pass::kDiffCol, x + 1, y),
-              glm::dvec3(number_color((i * 7 + 3) % materials))) << i;
+    ASSERT_EQ(p.rgb(Pass::kDiffCol, x + 1, y), glm::dvec3(number_color((i * 7 + 3) % materials)))
+        << i;
     ASSERT_EQ(p.rgb(Pass::kDiffCol, x, y + 1), glm::dvec3(number_color(i % materials))) << i;
   }
 }
@@ -75,11 +75,10 @@ TEST(GBuffer, HundredsOfSlotsInOneMeshKeepTheirColours) {
 
 TEST(GBuffer, AttributesAreThoseOfTheCorner) {
   // Emission (u, v of "a", u of "b"); the names' order differs between two materials.
-  const char* code =
-      "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-      "  closure_emission(surface, vec3(1.0), vec3(hit_uv(hit, ATTRIBUTE(0)),\n"
-      "                                            hit_uv(hit, ATTRIBUTE(1)).x));\n"
-      "}\n";
+  const char* code = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                     "  closure_emission(surface, vec3(1.0), vec3(hit_uv(hit, ATTRIBUTE(0)),\n"
+                     "                                            hit_uv(hit, ATTRIBUTE(1)).x));\n"
+                     "}\n";
   Geometry g = floor_at(0, 1);
   g.uv = {0, 0, 1, 0, 1, 2, 0, 2};
   const std::vector<float> other{5, 9, 5, 9, 7, 9, 7, 9};
@@ -118,7 +117,8 @@ TEST(GBuffer, AbsentAttributesAreBlack) {
   m.attributes = {"no such map", "no such colour"};
   TestScene s;
   s.add_object(floor_at(0, 1), {s.add_material(m)});
-  const Picture p = render(s, request(orthographic({0, 0, 3}, {0, 0, 0}, 0.5, 4, 4), {Pass::kEmit}));
+  const Picture p =
+      render(s, request(orthographic({0, 0, 3}, {0, 0, 0}, 0.5, 4, 4), {Pass::kEmit}));
   EXPECT_EQ(p.rgb(Pass::kEmit, 2, 2), glm::dvec3(1, 1, 0));
 }
 
@@ -131,7 +131,8 @@ TEST(GBuffer, ColoursHaveFourChannels) {
                       "  closure_emission(surface, vec3(1.0), hit_color(hit, COLOR_DEFAULT).rga);\n"
                       "}\n",
                       {}, {.emission = true, .glossy = false}))});
-  const Picture p = render(s, request(orthographic({0, 0, 3}, {0, 0, 0}, 1, 16, 16), {Pass::kEmit}));
+  const Picture p =
+      render(s, request(orthographic({0, 0, 3}, {0, 0, 0}, 1, 16, 16), {Pass::kEmit}));
   for (int i = 0; i < 16; ++i) {
     EXPECT_NEAR(p.value(Pass::kEmit, i, 5, 0), (i + 0.5) / 16, 1e-5);
     EXPECT_NEAR(p.value(Pass::kEmit, 5, i, 1), (i + 0.5) / 16, 1e-5);
@@ -159,8 +160,7 @@ TEST(GBuffer, PositionsAreKnownInEverySpace) {
       for (int x = 0; x < 8; ++x) {
         const glm::dvec3 world = on_plane(pixel_ray(camera, x, y), top, {0, 0, 1});
         const glm::dvec3 object = (world - glm::dvec3(at)) / glm::dvec3(2, 1, 1);
-        const glm::dvec3 generated =
-            (object - glm::dvec3(0.5, 1, 1)) / glm::dvec3(1, 2, 4);
+        const glm::dvec3 generated = (object - glm::dvec3(0.5, 1, 1)) / glm::dvec3(1, 2, 4);
         const glm::dvec3 due = space == 0 ? world : space == 1 ? object : generated;
         EXPECT_LT(glm::length(p.rgb(Pass::kEmit, x, y) - due), space == 0 ? 3e-5 : 1e-5)
             << calls[space];
@@ -193,7 +193,8 @@ TEST(GBuffer, FlatAndEmptyMatricesDoNoHarm) {
                                  glm::vec3(0), glm::vec3(1e-30f), glm::vec3(1, 1, -1e-20f)}) {
     TestScene s;
     const Id white = s.add_material(lambert());
-    const Id mesh = s.add_object(box({0, 0, 0}, glm::vec3(0.5f)), {white}, placed({0, 0, 0}, scale));
+    const Id mesh =
+        s.add_object(box({0, 0, 0}, glm::vec3(0.5f)), {white}, placed({0, 0, 0}, scale));
     s.add_instance(mesh, {white}, placed({0, 0, -2}, glm::vec3(4)));
     s.lights = {sun({0, 0, -1}, float(kPi)), point({3, 3, 3}, 100)};
     const gpu_scene::Camera camera = perspective({0, 0, 5}, {0, 0, 0}, 0.3, 16, 16);

@@ -20,7 +20,8 @@ void expect_same_picture(const Picture& a, const Picture& b, const std::string& 
   for (size_t i = 0; i < a[Pass::kCombined].size(); i += 4) {
     double error = 0;
     for (size_t c = 0; c < 3; ++c)
-      error = std::max<double>(error, std::abs(a[Pass::kCombined][i + c] - b[Pass::kCombined][i + c]));
+      error =
+          std::max<double>(error, std::abs(a[Pass::kCombined][i + c] - b[Pass::kCombined][i + c]));
     different += error > 2e-3 * std::max(b[Pass::kCombined][i], 0.1f);
   }
   EXPECT_LE(different, 4) << label << ": relative RMSE "
@@ -45,7 +46,8 @@ TEST(HardCases, ThePictureIsTheSameAtEveryScale) {
 TEST(HardCases, ThePictureIsTheSameFarFromTheOrigin) {
   const StillLife life = still_life();
   const Picture due = render(life.scene, request(life.camera, {Pass::kDepth}));
-  for (const glm::dvec3& origin : {glm::dvec3(1048576, 0, 0), glm::dvec3(-1048576, 1048576, 524288)}) {
+  for (const glm::dvec3& origin :
+       {glm::dvec3(1048576, 0, 0), glm::dvec3(-1048576, 1048576, 524288)}) {
     const StillLife other = still_life(1, origin);
     const Picture p = render(other.scene, request(other.camera, {Pass::kDepth}));
     expect_same_picture(p, due, "2^20 m away");
@@ -215,7 +217,8 @@ TEST(HardCases, ClipPlanesCutWhatIsSeen) {
   TestScene s;
   s.add_object(floor_at(0, 1), {s.add_material(lambert())});
   s.add_object(floor_at(-5, 1), {s.add_material(lambert())});
-  const Picture p = render(s, request(orthographic({0, 0, 3}, {0, 0, 0}, 0.5, 8, 8, 3.5, 7.5), {Pass::kDepth}));
+  const Picture p =
+      render(s, request(orthographic({0, 0, 3}, {0, 0, 0}, 0.5, 8, 8, 3.5, 7.5), {Pass::kDepth}));
   for (float d : p[Pass::kDepth]) ASSERT_EQ(d, 1e10f);
 }
 
@@ -235,12 +238,14 @@ TEST(HardCases, ValuesThatAreNotFiniteStayOutOfThePicture) {
                         "}\n",
                         {}, {.normal_map = true, .glossy = false}))});
     const float texels[8] = {broken, 1, 0.5f, 1, 1, broken, 1, broken};
-    s.materials.back().textures = {{s.add_image(scene::make_image(
-        "i", 2, 1, std::span<const float>(texels), false, scene::AlphaMode::kStraight))}};
+    s.materials.back().textures = {
+        {s.add_image(scene::make_image("i", 2, 1, std::span<const float>(texels), false,
+                                       scene::AlphaMode::kStraight))}};
     glm::mat4 matrix(1);
     matrix[2].x = broken;
     s.add_instance(1, {1}, matrix);
-    const Picture p = render(s, request(life.camera, {Pass::kDiffDir, Pass::kNormal, Pass::kDiffCol}, 2));
+    const Picture p =
+        render(s, request(life.camera, {Pass::kDiffDir, Pass::kNormal, Pass::kDiffCol}, 2));
     EXPECT_GT(mean(p[Pass::kCombined]), 0.3) << "the rest of the scene is still there";
     EXPECT_EQ(p.stats.warnings.size(), 2u);
   }
@@ -251,14 +256,13 @@ TEST(HardCases, ParametersThatAreNotFiniteStayOutOfThePicture) {
   for (float broken : {kNaN, kInf, -kInf}) {
     TestScene s = life.scene;
     s.materials[1].params[0].g = broken;
-    s.materials[0] = material(
-        "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-        "  Principled p = principled_defaults(hit);\n"
-        "  p.roughness = param(0).x;\n"
-        "  p.emission = vec3(param(0).x);\n"
-        "  closure_principled_v3(surface, vec3(1.0), p);\n"
-        "}\n",
-        {glm::vec4(broken)}, {.emission = true, .glossy = true});
+    s.materials[0] = material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                              "  Principled p = principled_defaults(hit);\n"
+                              "  p.roughness = param(0).x;\n"
+                              "  p.emission = vec3(param(0).x);\n"
+                              "  closure_principled_v3(surface, vec3(1.0), p);\n"
+                              "}\n",
+                              {glm::vec4(broken)}, {.emission = true, .glossy = true});
     render(s, request(life.camera, {Pass::kDiffDir, Pass::kGlossDir, Pass::kEmit}, 2));
   }
 }
@@ -283,8 +287,9 @@ TEST(HardCases, TheSamePictureTwiceToTheBit) {
   s.lights.push_back(area({0, -1, 4}, {0, 0, -1}, 200, scene::AreaShape::kSquare, 1, 1));
   s.world = world("vec3 evaluate_world(vec3 d) { return d * 0.5 + 0.5; }\n");
   for (uint32_t samples : {1u, 8u}) {
-    const engine::RenderRequest r = request(
-        life.camera, {Pass::kDiffDir, Pass::kNormal, Pass::kDepth, Pass::kEnv, Pass::kDiffCol}, samples);
+    const engine::RenderRequest r =
+        request(life.camera,
+                {Pass::kDiffDir, Pass::kNormal, Pass::kDepth, Pass::kEnv, Pass::kDiffCol}, samples);
     const Picture a = render(s, r), b = render(r), c = render(s, r);
     for (const auto& [pass, pixels] : a.passes) {
       EXPECT_EQ(pixels, b[pass]) << film::info(pass).name << " of the next frame";

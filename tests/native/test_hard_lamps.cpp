@@ -86,7 +86,8 @@ TEST(HardLamps, OfHugeEnergyStayFinite) {
 }
 
 TEST(HardLamps, OfTinyEnergyAreNotLost) {
-  const Picture p = render(floor_with({sun({0, 0, -1}, 1e-20f)}), request(kCamera, {Pass::kDiffDir}));
+  const Picture p =
+      render(floor_with({sun({0, 0, -1}, 1e-20f)}), request(kCamera, {Pass::kDiffDir}));
   EXPECT_NEAR(p.value(Pass::kDiffDir, 12, 12) / (1e-20 / kPi), 1, 1e-4);
 }
 
@@ -96,7 +97,8 @@ TEST(HardLamps, WithSettingsThatAreNotFiniteStayOutOfThePicture) {
       for (scene::Light lamp : one_of_each({0, 0, 1}, {0, 0, -1}))
         for (uint32_t samples : {1u, 4u}) {
           change(lamp);
-          SCOPED_TRACE(fmt::format("lamp type {}, value {}, {} samples", int(lamp.type), broken, samples));
+          SCOPED_TRACE(
+              fmt::format("lamp type {}, value {}, {} samples", int(lamp.type), broken, samples));
           // Another lamp beside it must not suffer.
           const Picture p = render(floor_with({lamp, sun({0, 0, -1}, 1)}),
                                    request(kCamera, {Pass::kDiffDir}, samples));
@@ -115,7 +117,8 @@ TEST(HardLamps, WithSettingsThatAreNotFiniteStayOutOfThePicture) {
 TEST(HardLamps, FarAwayAreSuns) {
   // 10 km above a floor of 4 m: the irradiance of a point at that distance, without self-shading.
   const double watts = 4 * kPi * 1e8;
-  const Picture p = render(floor_with({point({0, 0, 1e4f}, float(watts))}), request(kCamera, {Pass::kDiffDir}));
+  const Picture p =
+      render(floor_with({point({0, 0, 1e4f}, float(watts))}), request(kCamera, {Pass::kDiffDir}));
   for (float v : p[Pass::kDiffDir]) ASSERT_NEAR(v, 1 / kPi, 1e-4);
 }
 
@@ -127,18 +130,20 @@ TEST(HardLamps, ManyThousandsAddUp) {
     lamps.push_back(sun({0, 0, -1}, 1e-4f));
     lamps.back().cast_shadow = false;
   }
-  const Picture p = render(floor_with(lamps),
-                           request(orthographic({0, 0, 1}, {0, 0, 0}, 0.1, 2, 2), {Pass::kDiffDir}));
+  const Picture p = render(floor_with(lamps), request(orthographic({0, 0, 1}, {0, 0, 0}, 0.1, 2, 2),
+                                                      {Pass::kDiffDir}));
   EXPECT_NEAR(p.value(Pass::kDiffDir, 1, 1), count * 1e-4 / kPi, 1e-3 * count * 1e-4 / kPi);
 }
 
 TEST(HardLamps, SpotsOfExtremeCones) {
   for (float size : {0.0f, 1e-4f, 3.1415925f, 3.1415927f})
     for (float blend : {0.0f, 1e-7f, 1.0f}) {
-      const Picture p = render(floor_with({spot({0, 0, 2}, {0, 0, -1}, 100, size, blend)}),
-                               request(orthographic({0, 0, 1}, {0, 0, 0}, 1e-6, 3, 3), {Pass::kDiffDir}));
+      const Picture p =
+          render(floor_with({spot({0, 0, 2}, {0, 0, -1}, 100, size, blend)}),
+                 request(orthographic({0, 0, 1}, {0, 0, 0}, 1e-6, 3, 3), {Pass::kDiffDir}));
       if (size > 3) {
-        EXPECT_NEAR(p.value(Pass::kDiffDir, 1, 1), 100 / (16 * kPi * kPi), 0.01) << size << " " << blend;
+        EXPECT_NEAR(p.value(Pass::kDiffDir, 1, 1), 100 / (16 * kPi * kPi), 0.01)
+            << size << " " << blend;
       }
     }
 }

@@ -20,13 +20,12 @@ double linear(double code) {
 
 // uv * param(0).xy + param(0).zw; the texel's colour and alpha as emission.
 std::string show(bool unassociate, bool alpha = false) {
-  return fmt::format(
-      "void evaluate_material(const Hit hit, inout Surface surface) {{\n"
-      "  vec2 uv = hit_uv(hit, UV_DEFAULT) * param(0).xy + param(0).zw;\n"
-      "  vec4 texel = sample_image(hit, 0, uv, {});\n"
-      "  closure_emission(surface, vec3(1.0), {});\n"
-      "}}\n",
-      unassociate, alpha ? "texel.aaa" : "texel.rgb");
+  return fmt::format("void evaluate_material(const Hit hit, inout Surface surface) {{\n"
+                     "  vec2 uv = hit_uv(hit, UV_DEFAULT) * param(0).xy + param(0).zw;\n"
+                     "  vec4 texel = sample_image(hit, 0, uv, {});\n"
+                     "  closure_emission(surface, vec3(1.0), {});\n"
+                     "}}\n",
+                     unassociate, alpha ? "texel.aaa" : "texel.rgb");
 }
 
 // A square that fills the picture and shows image 1; uv run over `scale` from `offset`.
@@ -34,7 +33,8 @@ TestScene shown(scene::Image image, const std::string& code, scene::TextureUse u
                 glm::vec2 scale = {1, 1}, glm::vec2 offset = {0, 0}) {
   TestScene s;
   use.image = s.add_image(std::move(image));
-  scene::Material m = material(code, {glm::vec4(scale, offset)}, {.emission = true, .glossy = false});
+  scene::Material m =
+      material(code, {glm::vec4(scale, offset)}, {.emission = true, .glossy = false});
   m.textures = {use};
   s.add_object(floor_at(0, 1), {s.add_material(m)});
   return s;
@@ -92,9 +92,11 @@ TEST(Images, EveryCodeIsDecoded) {
   for (int i = 0; i < 256; ++i)
     ramp.insert(ramp.end(), {uint8_t(i), uint8_t(255 - i), uint8_t(i), 255});
   TestScene s = shown(bytes(256, 1, ramp, true), show(false), {.closest = true});
-  const Picture p = render(s, request(orthographic({0, 0, 2}, {0, 0, 0}, 1, 256, 256), {Pass::kEmit}));
+  const Picture p =
+      render(s, request(orthographic({0, 0, 2}, {0, 0, 0}, 1, 256, 256), {Pass::kEmit}));
   Worst worst;
-  for (int x = 0; x < 256; ++x) worst.compare(p.value(Pass::kEmit, x, 100), linear(x / 255.0), 1e-3, x, 0);
+  for (int x = 0; x < 256; ++x)
+    worst.compare(p.value(Pass::kEmit, x, 100), linear(x / 255.0), 1e-3, x, 0);
   EXPECT_WORST_BELOW(worst, 1e-4);
 }
 
@@ -103,8 +105,9 @@ TEST(Images, LinearFilterAndExtensions) {
   for (const Extension extension : {Extension::kRepeat, Extension::kExtend, Extension::kClip})
     for (bool closest : {false, true}) {
       // u runs from -1 to 2.
-      const Picture p = picture_of(shown(floats(4, 1, row), show(false),
-                                         {.closest = closest, .extension = extension}, {3, 0}, {-1, 0.5f}));
+      const Picture p =
+          picture_of(shown(floats(4, 1, row), show(false),
+                           {.closest = closest, .extension = extension}, {3, 0}, {-1, 0.5f}));
       Worst worst;
       const auto fetch = [&](int i, int c) {
         if (extension == Extension::kClip && (i < 0 || i > 3)) return 0.0;
@@ -139,8 +142,10 @@ TEST(Images, UnassociatedColourIsThatOfTheFile) {
   const Picture p = picture_of(shown(bytes(1, 1, texel, true, AlphaMode::kStraight), show(true)));
   // Premultiplied codes are whole numbers: half a code over alpha, times the slope.
   for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(p.value(Pass::kEmit, 16, 16, c), linear(texel[size_t(c)] / 255.0), 0.5 * kLinear * 4);
-  const Picture alpha = picture_of(shown(bytes(1, 1, texel, true, AlphaMode::kStraight), show(true, true)));
+    EXPECT_NEAR(p.value(Pass::kEmit, 16, 16, c), linear(texel[size_t(c)] / 255.0),
+                0.5 * kLinear * 4);
+  const Picture alpha =
+      picture_of(shown(bytes(1, 1, texel, true, AlphaMode::kStraight), show(true, true)));
   EXPECT_NEAR(alpha.value(Pass::kEmit, 16, 16), 64 / 255.0, 1e-6);
 }
 
@@ -148,16 +153,19 @@ TEST(Images, AlphaIsFilteredWithoutChangingTheColour) {
   // White from alpha 1 to alpha 0: colour stays 1 while alpha falls linearly.
   const std::vector<uint8_t> row{255, 255, 255, 255, 255, 255, 255, 0};
   const Picture color = picture_of(shown(bytes(2, 1, row, true, AlphaMode::kStraight), show(true))),
-                alpha = picture_of(shown(bytes(2, 1, row, true, AlphaMode::kStraight), show(true, true)));
+                alpha = picture_of(
+                    shown(bytes(2, 1, row, true, AlphaMode::kStraight), show(true, true)));
   for (int x = 9; x < 23; ++x) {
     EXPECT_NEAR(color.value(Pass::kEmit, x, 16), 1, 0.02) << x;
-    EXPECT_NEAR(alpha.value(Pass::kEmit, x, 16), 1 - ((x + 0.5) / 32 - 0.25) / 0.5, 1.5 * kCode) << x;
+    EXPECT_NEAR(alpha.value(Pass::kEmit, x, 16), 1 - ((x + 0.5) / 32 - 0.25) / 0.5, 1.5 * kCode)
+        << x;
   }
 }
 
 TEST(Images, OtherAlphaModes) {
   const std::vector<uint8_t> texel{128, 64, 255, 64};
-  for (const AlphaMode mode : {AlphaMode::kChannelPacked, AlphaMode::kNone, AlphaMode::kPremultiplied}) {
+  for (const AlphaMode mode :
+       {AlphaMode::kChannelPacked, AlphaMode::kNone, AlphaMode::kPremultiplied}) {
     const Picture color = picture_of(shown(bytes(1, 1, texel, true, mode), show(false))),
                   alpha = picture_of(shown(bytes(1, 1, texel, true, mode), show(false, true)));
     EXPECT_NEAR(color.value(Pass::kEmit, 16, 16), linear(128 / 255.0), 1e-4);
@@ -200,7 +208,8 @@ TEST(Images, TooManyInOneMaterialWarn) {
   const int limit = shared_engine().device().max_texture_units - gpu_scene::kImageUnit;
   for (int count : {limit, limit + 1, limit + 9}) {
     TestScene s;
-    std::string code = "void evaluate_material(const Hit hit, inout Surface surface) {\n  vec3 sum = vec3(0.0);\n";
+    std::string code =
+        "void evaluate_material(const Hit hit, inout Surface surface) {\n  vec3 sum = vec3(0.0);\n";
     scene::Material m;
     for (int i = 0; i < count; ++i) {
       m.textures.push_back({s.add_image(floats(1, 1, {1, 0.5f, 0.25f, 1}))});
@@ -215,7 +224,8 @@ TEST(Images, TooManyInOneMaterialWarn) {
       EXPECT_NEAR(p.value(Pass::kEmit, 16, 16, 1), 0.5 * count, 1e-5);
       EXPECT_TRUE(p.stats.warnings.empty());
     } else {
-      EXPECT_EQ(p.stats.warnings.size(), 1u) << fmt::format("{}", fmt::join(p.stats.warnings, "\n"));
+      EXPECT_EQ(p.stats.warnings.size(), 1u)
+          << fmt::format("{}", fmt::join(p.stats.warnings, "\n"));
       EXPECT_NE(p.stats.warnings[0].find("'Patchwork'"), std::string::npos);
       EXPECT_GT(p.value(Pass::kEmit, 16, 16, 1), 0.5 * (limit - 1) - 1e-3)
           << "the images within the limit are shown: " << p.stats.warnings[0];
@@ -242,12 +252,13 @@ TEST(Images, FinerLevelsAreUsedWithMoreSamples) {
   for (int i = 0; i < 64; ++i)
     for (int c = 0; c < 4; ++c) stripes.push_back(c == 3 || i / 2 % 2 ? 1.0f : 0.0f);
   const TestScene s = shown(floats(64, 1, stripes), show(false), {}, {1, 1});
-  engine::RenderRequest r = request(orthographic({0, 0, 2}, {0, 0, 0}, 1, 32, 32), {Pass::kEmit}, 64);
+  engine::RenderRequest r =
+      request(orthographic({0, 0, 2}, {0, 0, 0}, 1, 32, 32), {Pass::kEmit}, 64);
   r.filter_width = 0.5f;
   const Picture p = render(s, r);
-  // Blackman-Harris of half width .5 lies within its pixel, which is one stripe, blurred by a texel.
-  for (int x = 4; x < 28; ++x)
-    EXPECT_NEAR(p.value(Pass::kEmit, x, 16), x % 2 ? 1 : 0, 0.15) << x;
+  // Blackman-Harris of half width .5 lies within its pixel, which is one stripe, blurred by a
+  // texel.
+  for (int x = 4; x < 28; ++x) EXPECT_NEAR(p.value(Pass::kEmit, x, 16), x % 2 ? 1 : 0, 0.15) << x;
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ using film::Pass;
 // Single precision along the way: positions, distances squared, a handful of products.
 constexpr double kRounding = 1e-5;
 
-// A white floor at z = 0 that every pixel shows. Lamps cast no shadow: that the floor does not shade
-// itself is a law of its own (test_shadow_acne.cpp).
+// A white floor at z = 0 that every pixel shows. Lamps cast no shadow: that the floor does not
+// shade itself is a law of its own (test_shadow_acne.cpp).
 TestScene lit_floor(std::vector<scene::Light> lamps) {
   TestScene s;
   s.add_object(floor_at(0, 6), {s.add_material(lambert())});
@@ -42,8 +42,8 @@ void expect_on_floor(const TestScene& s, const std::function<double(glm::dvec3)>
 }
 
 TEST(Lamps, ASunGivesItsStrengthTimesTheCosine) {
-  for (const glm::dvec3& direction : {glm::dvec3(0, 0, -1), glm::dvec3(0.3, 0.4, -1),
-                                      glm::dvec3(-1, 0, -0.2)}) {
+  for (const glm::dvec3& direction :
+       {glm::dvec3(0, 0, -1), glm::dvec3(0.3, 0.4, -1), glm::dvec3(-1, 0, -0.2)}) {
     const double cosine = -glm::normalize(direction).z;
     expect_on_floor(lit_floor({sun(glm::vec3(direction), 2.5f)}),
                     [&](glm::dvec3) { return 2.5 / kPi * cosine; });
@@ -51,7 +51,8 @@ TEST(Lamps, ASunGivesItsStrengthTimesTheCosine) {
 }
 
 TEST(Lamps, ASunFromBelowGivesNothing) {
-  expect_on_floor(lit_floor({sun({0.1f, 0, 1}, 2)}), [](glm::dvec3) { return 0.0; }, 0);
+  expect_on_floor(
+      lit_floor({sun({0.1f, 0, 1}, 2)}), [](glm::dvec3) { return 0.0; }, 0);
 }
 
 TEST(Lamps, ColoursMultiply) {
@@ -63,8 +64,8 @@ TEST(Lamps, ColoursMultiply) {
 }
 
 TEST(Lamps, APointFallsOffWithTheSquareOfTheDistance) {
-  for (const glm::dvec3& lamp : {glm::dvec3(0, 0, 1), glm::dvec3(0.7, -0.4, 0.3),
-                                 glm::dvec3(-1, 1, 20)})
+  for (const glm::dvec3& lamp :
+       {glm::dvec3(0, 0, 1), glm::dvec3(0.7, -0.4, 0.3), glm::dvec3(-1, 1, 20)})
     expect_on_floor(lit_floor({point(glm::vec3(lamp), 10)}), [&](const glm::dvec3& p) {
       const glm::dvec3 d = glm::dvec3(glm::vec3(lamp)) - p;
       const double squared = glm::dot(d, d);
@@ -73,7 +74,8 @@ TEST(Lamps, APointFallsOffWithTheSquareOfTheDistance) {
 }
 
 TEST(Lamps, APointBelowTheFloorGivesNothing) {
-  expect_on_floor(lit_floor({point({0, 0, -1}, 10)}), [](glm::dvec3) { return 0.0; }, 0);
+  expect_on_floor(
+      lit_floor({point({0, 0, -1}, 10)}), [](glm::dvec3) { return 0.0; }, 0);
 }
 
 double smoothstep(double t) {
@@ -83,8 +85,8 @@ double smoothstep(double t) {
 
 TEST(Lamps, ASpotHasCyclesProfile) {
   const glm::dvec3 lamp(0.25, 0.5, 2), axis = glm::normalize(glm::dvec3(0.2, -0.3, -1));
-  for (const auto& [size, blend] : {std::pair(0.9, 0.25), {0.9, 1.0}, {2.0, 0.5}, {3.0, 0.15},
-                                    {kPi, 1.0}}) {
+  for (const auto& [size, blend] :
+       {std::pair(0.9, 0.25), {0.9, 1.0}, {2.0, 0.5}, {3.0, 0.15}, {kPi, 1.0}}) {
     const double outer = std::cos(0.5 * float(size)), width = (1 - outer) * blend;
     expect_on_floor(
         lit_floor({spot(glm::vec3(lamp), glm::vec3(axis), 20, float(size), float(blend))}),
@@ -123,16 +125,17 @@ TEST(Lamps, ASpotWithoutBlendHasAHardEdge) {
 TEST(Lamps, AnAreaLampIsOneSidedAndLambertian) {
   // Tiny, so that its centre stands for all of it: far field P / (4 d^2) cos cos, over pi.
   const glm::dvec3 lamp(0.3, 0.2, 1.5), axis = glm::normalize(glm::dvec3(0.8, -0.1, -1));
-  expect_on_floor(lit_floor({area(glm::vec3(lamp), glm::vec3(axis), 30, scene::AreaShape::kDisk,
-                                  1e-3f, 1e-3f)}),
-                  [&](const glm::dvec3& p) {
-                    const glm::dvec3 d = lamp - p;
-                    const double squared = glm::dot(d, d), distance = std::sqrt(squared);
-                    const double cosine = std::max(-glm::dot(d, axis) / distance, 0.0);
-                    return 30 / (4 * kPi * squared) * cosine * d.z / distance;
-                  },
-                  // The cosine at the lamp falls to 0 inside the picture: absolute there.
-                  kRounding, 0.02);
+  expect_on_floor(
+      lit_floor(
+          {area(glm::vec3(lamp), glm::vec3(axis), 30, scene::AreaShape::kDisk, 1e-3f, 1e-3f)}),
+      [&](const glm::dvec3& p) {
+        const glm::dvec3 d = lamp - p;
+        const double squared = glm::dot(d, d), distance = std::sqrt(squared);
+        const double cosine = std::max(-glm::dot(d, axis) / distance, 0.0);
+        return 30 / (4 * kPi * squared) * cosine * d.z / distance;
+      },
+      // The cosine at the lamp falls to 0 inside the picture: absolute there.
+      kRounding, 0.02);
 }
 
 TEST(Lamps, SpreadNarrowsAnAreaLamp) {
@@ -142,17 +145,18 @@ TEST(Lamps, SpreadNarrowsAnAreaLamp) {
         area(glm::vec3(lamp), {0, 0, -1}, 30, scene::AreaShape::kDisk, 1e-3f, 1e-3f);
     light.spread = spread;
     const double half = 0.5 * spread;
-    expect_on_floor(lit_floor({light}),
-                    [&](const glm::dvec3& p) {
-                      const glm::dvec3 d = lamp - p;
-                      const double squared = glm::dot(d, d), cosine = d.z / std::sqrt(squared);
-                      const double t = std::acos(std::min(cosine, 1.0));
-                      return 30 / (4 * kPi * squared) * cosine * cosine *
-                             std::max(std::tan(half) - std::tan(t), 0.0) / (std::tan(half) - half);
-                    },
-                    // The tangent comes from the cosine: next to the axis a rounding of 1e-7 there is up
-                    // to 5e-5 of the narrowest cone's tangent, .25.
-                    2e-4, 0.02);
+    expect_on_floor(
+        lit_floor({light}),
+        [&](const glm::dvec3& p) {
+          const glm::dvec3 d = lamp - p;
+          const double squared = glm::dot(d, d), cosine = d.z / std::sqrt(squared);
+          const double t = std::acos(std::min(cosine, 1.0));
+          return 30 / (4 * kPi * squared) * cosine * cosine *
+                 std::max(std::tan(half) - std::tan(t), 0.0) / (std::tan(half) - half);
+        },
+        // The tangent comes from the cosine: next to the axis a rounding of 1e-7 there is up
+        // to 5e-5 of the narrowest cone's tangent, .25.
+        2e-4, 0.02);
   }
 }
 

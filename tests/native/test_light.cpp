@@ -23,9 +23,9 @@ TEST(LampPower, FollowsCyclesConventions) {
 }
 
 TEST(LampPower, DoesNotDependOnTheObjectsScale) {
-  for (scene::Light lamp : {point({0, 0, 1}, 5), spot({0, 0, 1}, {1, 0, -1}, 5, 1, 0),
-                            sun({1, 2, -3}, 5), area({0, 0, 1}, {0, 1, -1}, 5,
-                                                     scene::AreaShape::kSquare, 1, 1)}) {
+  for (scene::Light lamp :
+       {point({0, 0, 1}, 5), spot({0, 0, 1}, {1, 0, -1}, 5, 1, 0), sun({1, 2, -3}, 5),
+        area({0, 0, 1}, {0, 1, -1}, 5, scene::AreaShape::kSquare, 1, 1)}) {
     const glm::vec3 before = lamp.power(), direction = lamp.direction();
     for (int c = 0; c < 3; ++c) lamp.object_to_world[c] *= 7.0f;
     EXPECT_EQ(lamp.power(), before);
@@ -101,7 +101,7 @@ TEST(SampleLight, SunsNearHalfTheSkyStayFinite) {
 TEST(SampleLight, AreasFillTheirShape) {
   struct Case {
     scene::AreaShape shape;
-    float size_y;   // as the lamp has it
+    float size_y;     // as the lamp has it
     double extent_y;  // as it must be used
     bool round;
   };
@@ -167,12 +167,10 @@ TEST(SampleLight, PointsAndSpotsAreDisksThatFaceTheTarget) {
 }
 
 TEST(SampleLight, PointsWithoutAnExtentHaveOnePlace) {
-  for (const scene::Light& lamp :
-       {point({1, 2, 3}, 5), spot({1, 2, 3}, {0, 1, 0}, 5, 1, 0),
-        area({1, 2, 3}, {0, 1, 0}, 5, scene::AreaShape::kEllipse, 0, 0)})
-    for_points(lamp, 4, {0, 0, 0}, [&](const scene::LightSample& s) {
-      EXPECT_EQ(s.position, glm::vec3(1, 2, 3));
-    });
+  for (const scene::Light& lamp : {point({1, 2, 3}, 5), spot({1, 2, 3}, {0, 1, 0}, 5, 1, 0),
+                                   area({1, 2, 3}, {0, 1, 0}, 5, scene::AreaShape::kEllipse, 0, 0)})
+    for_points(lamp, 4, {0, 0, 0},
+               [&](const scene::LightSample& s) { EXPECT_EQ(s.position, glm::vec3(1, 2, 3)); });
   const scene::Light lamp = sun({0, 0.6f, -0.8f}, 5);
   for_points(lamp, 4, {}, [&](const scene::LightSample& s) {
     EXPECT_LT(glm::length(s.direction - lamp.direction()), 1e-7f);

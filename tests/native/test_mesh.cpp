@@ -59,8 +59,8 @@ TEST(PackUnit, IgnoresTheLength) {
 }
 
 TEST(PackUnit, TurnsWhatHasNoDirectionToTheZenith) {
-  for (const glm::vec3& n : {glm::vec3(0), glm::vec3(kNaN, 1, 0), glm::vec3(0, kInf, 0),
-                             glm::vec3(0, 0, -kInf)})
+  for (const glm::vec3& n :
+       {glm::vec3(0), glm::vec3(kNaN, 1, 0), glm::vec3(0, kInf, 0), glm::vec3(0, 0, -kInf)})
     EXPECT_EQ(unpack(scene::pack_unit(n)), glm::dvec3(0, 0, 1));
 }
 

@@ -44,24 +44,25 @@ const glm::dvec3 kUp(0, 0, 1);
 struct Mapped {
   TestScene s;
   Id mesh;
-  explicit Mapped(const glm::dvec3& n, const glm::mat4& matrix = glm::mat4(1),
-                  double strength = 1, Geometry g = floor_at(0, 2)) {
-    mesh = s.add_object(
-        g, {s.add_material(material(kTangentMap, {texel(n, strength)}, {.normal_map = true,
-                                                                        .glossy = false}))},
-        matrix);
+  explicit Mapped(const glm::dvec3& n, const glm::mat4& matrix = glm::mat4(1), double strength = 1,
+                  Geometry g = floor_at(0, 2)) {
+    mesh = s.add_object(g,
+                        {s.add_material(material(kTangentMap, {texel(n, strength)},
+                                                 {.normal_map = true, .glossy = false}))},
+                        matrix);
   }
   glm::dvec3 normal(const glm::dvec3& view) const {
-    const Picture p = render(s, request(orthographic(3.0 * glm::normalize(view), {0, 0, 0}, 0.01, 3, 3),
-                                        {Pass::kNormal}));
+    const Picture p =
+        render(s, request(orthographic(3.0 * glm::normalize(view), {0, 0, 0}, 0.01, 3, 3),
+                          {Pass::kNormal}));
     return p.rgb(Pass::kNormal, 1, 1);
   }
 };
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = kPacked) {
   EXPECT_LT(glm::length(a - b), tolerance)
-      << fmt::format("({:.5f}, {:.5f}, {:.5f}) where ({:.5f}, {:.5f}, {:.5f}) is due", a.x, a.y, a.z,
-                     b.x, b.y, b.z);
+      << fmt::format("({:.5f}, {:.5f}, {:.5f}) where ({:.5f}, {:.5f}, {:.5f}) is due", a.x, a.y,
+                     a.z, b.x, b.y, b.z);
 }
 
 TEST(NormalMaps, TiltAlongTheTextureAxes) {
@@ -75,7 +76,8 @@ TEST(NormalMaps, AreCorrectedAgainstTheView) {
   struct Case {
     double view, nx, due;
   };
-  for (const Case& c : {Case{0, 0.8, 0.70356}, Case{0.9, -0.6, -0.32442}, Case{1.5, -0.6, -0.03039}}) {
+  for (const Case& c :
+       {Case{0, 0.8, 0.70356}, Case{0.9, -0.6, -0.32442}, Case{1.5, -0.6, -0.03039}}) {
     const glm::dvec3 view(std::sin(c.view), 0, std::cos(c.view));
     const glm::dvec3 n = Mapped({c.nx, 0, std::sqrt(1 - c.nx * c.nx)}).normal(view);
     EXPECT_NEAR(n.x, c.due, kPacked);
@@ -99,7 +101,8 @@ TEST(NormalMaps, LightFadesBeforeTheSurfacesHorizon) {
     const glm::dvec3 l = glm::normalize(raw);
     m.s.lights = {sun(glm::vec3(-l), float(kPi))};
     m.s.lights[0].cast_shadow = false;
-    const Picture p = render(m.s, request(orthographic(3.0 * kUp, {0, 0, 0}, 0.01, 3, 3), {Pass::kDiffDir}));
+    const Picture p =
+        render(m.s, request(orthographic(3.0 * kUp, {0, 0, 0}, 0.01, 3, 3), {Pass::kDiffDir}));
     const double due = std::max(glm::dot(n, l), 0.0) * bump(kUp, n, l);
     EXPECT_NEAR(p.value(Pass::kDiffDir, 1, 1), due, 3e-4) << raw.x << " " << raw.z;
   }
@@ -157,12 +160,11 @@ TEST(NormalMaps, DegenerateCoordinatesUseTheObjectsXAxis) {
 }
 
 TEST(NormalMaps, InObjectAndWorldSpace) {
-  const char* code =
-      "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-      "  vec3 n = param(1).x > 0.5 ? normal_map_object(hit, param(0).rgb, 1.0)\n"
-      "                            : normal_map_world(hit, param(0).rgb, 1.0);\n"
-      "  closure_diffuse(surface, vec3(1.0), vec3(1.0), 0.0, n);\n"
-      "}\n";
+  const char* code = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                     "  vec3 n = param(1).x > 0.5 ? normal_map_object(hit, param(0).rgb, 1.0)\n"
+                     "                            : normal_map_world(hit, param(0).rgb, 1.0);\n"
+                     "  closure_diffuse(surface, vec3(1.0), vec3(1.0), 0.0, n);\n"
+                     "}\n";
   const glm::dvec3 n = glm::normalize(glm::dvec3(0.3, 0.2, 1));
   // A turn by 90 degrees about z with a stretch along the object's x.
   const glm::mat4 turned(glm::vec4(0, 2, 0, 0), glm::vec4(-1, 0, 0, 0), glm::vec4(0, 0, 1, 0),
@@ -183,7 +185,7 @@ TEST(NormalMaps, InObjectAndWorldSpace) {
     }
 }
 
-// --- interpolated normals ---------------------------------------------------------------------------
+// --- interpolated normals ------------------------------------------------------------------------
 
 TEST(SmoothNormals, AreCorrectedAgainstTheViewAsMappedOnesAre) {
   // Measured: a smooth normal tilted by .7, seen from -.5: N' = (sin .5304, 0, cos .5304).
@@ -197,12 +199,14 @@ TEST(SmoothNormals, AreCorrectedAgainstTheViewAsMappedOnesAre) {
   const glm::dvec3 n = corrected(smooth, kUp, view);
   EXPECT_NEAR(n.x, std::sin(0.5304), 1e-4);
   expect_near(render(s, request(camera, {Pass::kNormal})).rgb(Pass::kNormal, 1, 1), n);
-  for (const glm::dvec3& raw : {glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0.6), glm::dvec3(1, 1, 0.2)}) {
+  for (const glm::dvec3& raw :
+       {glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0.6), glm::dvec3(1, 1, 0.2)}) {
     const glm::dvec3 l = glm::normalize(raw);
     s.lights = {sun(glm::vec3(-l), float(kPi))};
     s.lights[0].cast_shadow = false;
     const double due = std::max(glm::dot(n, l), 0.0) * bump(smooth, n, l);
-    EXPECT_NEAR(render(s, request(camera, {Pass::kDiffDir})).value(Pass::kDiffDir, 1, 1), due, 3e-4);
+    EXPECT_NEAR(render(s, request(camera, {Pass::kDiffDir})).value(Pass::kDiffDir, 1, 1), due,
+                3e-4);
   }
 }
 
@@ -237,7 +241,8 @@ TEST(SmoothNormals, TurnWithNonUniformScales) {
       if (q < 0.2) continue;
       ++seen;
       const double z = 0.5 * std::sqrt(q);
-      expect_near(p.rgb(Pass::kNormal, x, y), glm::normalize(glm::dvec3(at.x / 4, at.y, 4 * z)), 0.02);
+      expect_near(p.rgb(Pass::kNormal, x, y), glm::normalize(glm::dvec3(at.x / 4, at.y, 4 * z)),
+                  0.02);
     }
   EXPECT_GT(seen, 100);
 }

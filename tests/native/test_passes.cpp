@@ -127,7 +127,8 @@ TEST(Passes, TheFilterIsABlackmanHarrisWindow) {
   TestScene s;
   s.add_object(quad({-1, 0, 0}, {1, 0, 0}, {0, 4, 0}), {s.add_material(lambert())});
   // Sixteen pixels for two metres: the edge at x = 0 runs between pixels 7 and 8.
-  engine::RenderRequest r = request(orthographic({0, 0, 3}, {0, 0, 0}, 1, 16, 16), {Pass::kDiffCol}, 512);
+  engine::RenderRequest r =
+      request(orthographic({0, 0, 3}, {0, 0, 0}, 1, 16, 16), {Pass::kDiffCol}, 512);
   const Picture p = render(s, r);
   // A plain count of hits: 512 points of a sequence, so 3 / 512 or so off.
   EXPECT_NEAR(p.value(Pass::kDiffCol, 7, 8), 0.8814, 0.006);
@@ -140,7 +141,8 @@ TEST(Passes, DividedPassesAreRatiosOfMeans) {
   // At an edge between albedo .8 in full light and albedo .1 in half of it, DiffDir is
   // sum(light * albedo) / sum(albedo), as in Cycles.
   TestScene s;
-  const Id light = s.add_material(lambert(glm::vec3(0.8f))), dark = s.add_material(lambert(glm::vec3(0.1f)));
+  const Id light = s.add_material(lambert(glm::vec3(0.8f))),
+           dark = s.add_material(lambert(glm::vec3(0.1f)));
   s.add_object(quad({-1, 0, 0}, {1, 0, 0}, {0, 4, 0}), {light});
   // A roof of 60 degrees, so that a vertical sun lights it by half.
   s.add_object(quad({0.5f, 0, -0.866025f}, {0.5f, 0, -0.866025f}, {0, 4, 0}), {dark});

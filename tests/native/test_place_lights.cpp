@@ -23,8 +23,8 @@ const scene::Bounds kRoom = bounds_of({-3, -1, 0}, {5, 2, 4});
 std::vector<glm::dvec3> corners(const scene::Bounds& b) {
   std::vector<glm::dvec3> all;
   for (int i = 0; i < 8; ++i)
-    all.push_back({i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y,
-                   i & 4 ? b.high.z : b.low.z});
+    all.push_back(
+        {i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z});
   return all;
 }
 
@@ -75,12 +75,11 @@ TEST(PlaceLights, FacesReadTheMapsAsTheyAreDrawn) {
 TEST(PlaceLights, GivesEachKindItsFaces) {
   scene::Light silent = point({0, 0, 3}, 1);
   silent.cast_shadow = false;
-  const LightSet set = place({point({0, 0, 3}, 1), sun({0, 0, -1}, 1),
-                              spot({0, 0, 3}, {0, 0, -1}, 1, 1.0f, 0),
-                              spot({0, 0, 3}, {0, 0, -1}, 1, 3.0f, 0),
-                              area({0, 0, 3}, {0, 0, -1}, 1, scene::AreaShape::kDisk, 1, 1),
-                              silent},
-                             kRoom, 512, 100);
+  const LightSet set =
+      place({point({0, 0, 3}, 1), sun({0, 0, -1}, 1), spot({0, 0, 3}, {0, 0, -1}, 1, 1.0f, 0),
+             spot({0, 0, 3}, {0, 0, -1}, 1, 3.0f, 0),
+             area({0, 0, 3}, {0, 0, -1}, 1, scene::AreaShape::kDisk, 1, 1), silent},
+            kRoom, 512, 100);
   const size_t faces[6] = {6, 1, 1, 6, 6, 0};
   ASSERT_EQ(set.lights.size(), 6u);
   uint32_t first = 0;
@@ -141,6 +140,18 @@ TEST(PlaceLights, SharesLampsOutAmongBatches) {
   }
 }
 
+TEST(PlaceLights, NoBatchOutrunsLlvmpipesLoops) {
+  // An invocation is cut off after 65 535 iterations; a lamp with a shadow takes five.
+  const LightSet set = place_lights(std::vector<scene::Light>(30000, sun({0, 0, -1}, 1)), false, {},
+                                    kRoom, {0, 0, 0}, 64, 12);
+  uint32_t sum = 0;
+  for (const rasterize::LightBatch& batch : set.batches) {
+    EXPECT_LT(5 * batch.light_count, 65000u);
+    sum += batch.light_count;
+  }
+  EXPECT_EQ(sum, 30000u);
+}
+
 TEST(PlaceLights, SunMapsHoldTheWholeScene) {
   std::mt19937 random(4);
   std::normal_distribution<float> normal;
@@ -150,13 +161,13 @@ TEST(PlaceLights, SunMapsHoldTheWholeScene) {
                                   bounds_of({-900, -900, -900}, {900, 900, 900})};
   for (const scene::Bounds& bounds : scenes)
     for (int i = 0; i < 40; ++i) {
-      const glm::vec3 direction = i < 6 ? glm::vec3(i == 0, i == 1, i == 2) -
-                                              glm::vec3(i == 3, i == 4, i == 5)
-                                        : glm::vec3(normal(random), normal(random), normal(random));
+      const glm::vec3 direction =
+          i < 6 ? glm::vec3(i == 0, i == 1, i == 2) - glm::vec3(i == 3, i == 4, i == 5)
+                : glm::vec3(normal(random), normal(random), normal(random));
       // A shifted grid must not lose the border either.
       for (float shift : {0.0f, 0.5f, -0.5f}) {
-        const LightSet set = place_lights({sun(direction, 1)}, true, {{0.5f, 0.5f, glm::vec2(shift)}},
-                                          bounds, camera, 64, 12);
+        const LightSet set = place_lights({sun(direction, 1)}, true,
+                                          {{0.5f, 0.5f, glm::vec2(shift)}}, bounds, camera, 64, 12);
         ASSERT_EQ(set.faces.size(), 1u);
         for (const glm::dvec3& corner : corners(bounds)) {
           const glm::dvec3 ndc = ndc_of(set.faces[0], corner, camera);
@@ -220,11 +231,11 @@ TEST(PlaceLights, SpotMapsHoldTheirCone) {
   for (float size : {0.05f, 0.8f, 2.0f, 2.5f, 3.14159f}) {
     const LightSet set = place({spot(glm::vec3(lamp), axis, 1, size, 0)}, kRoom, 64);
     const glm::dvec3 z(axis), x = glm::normalize(glm::cross(z, glm::dvec3(0, 0, 1))),
-                     y = glm::cross(z, x);
+                              y = glm::cross(z, x);
     for (int i = 0; i < 64; ++i) {
       const double phi = 2 * kPi * i / 64, theta = 0.5 * size * 0.9999;
-      const glm::dvec3 d = 2.0 * (std::cos(theta) * z +
-                                  std::sin(theta) * (std::cos(phi) * x + std::sin(phi) * y));
+      const glm::dvec3 d =
+          2.0 * (std::cos(theta) * z + std::sin(theta) * (std::cos(phi) * x + std::sin(phi) * y));
       const size_t face = set.faces.size() == 6 ? cube_face(d) : 0;
       const glm::dvec3 ndc = ndc_of(set.faces[face], lamp + d, camera);
       EXPECT_LE(std::max(std::abs(ndc.x), std::abs(ndc.y)), 1) << "cone " << size;

@@ -44,7 +44,8 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
       {"a sun",
        [](auto& f, auto&) { f.lamps[1] = f.shadow_lamps[1] = 1; },
        {"direct_light", "sun_shadows"}},
-      {"spots", [](auto& f, auto&) { f.lamps[2] = f.shadow_lamps[2] = 5; },
+      {"spots",
+       [](auto& f, auto&) { f.lamps[2] = f.shadow_lamps[2] = 5; },
        {"direct_light", "spot_shadows"}},
       {"areas, one with shadow",
        [](auto& f, auto&) {
@@ -75,7 +76,9 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
        {"direct_light", "sun_shadows"}},
       {"a world", [](auto& f, auto&) { f.world = true; }, {"world_light", "world_background"}},
       {"passes with a divisor",
-       [](auto&, auto& s) { s.passes = pass_set({film::Pass::kDiffDir, film::Pass::kDepth}); },
+       [](auto&, auto& s) {
+         s.passes = pass_set({film::Pass::kDiffDir, film::Pass::kDepth});
+       },
        {"pass_diffdir", "pass_diffcol", "pass_depth"}},
   };
   for (const Case& c : cases) {
@@ -121,8 +124,11 @@ TEST(FramePlan, GivesAReasonForEverything) {
 }
 
 TEST(FramePlan, ForcingRunsEverythingAndKeepsTheReason) {
-  const plan::Effects plain = plan::make_plan(furnished(), {}),
-                      forced = plan::make_plan(furnished(), {.force_all_effects = true, .passes = {}});
+  const plan::PlanSettings several{.samples = 4, .passes = {}};
+  plan::PlanSettings force = several;
+  force.force_all_effects = true;
+  const plan::Effects plain = plan::make_plan(furnished(), several),
+                      forced = plan::make_plan(furnished(), force);
   ASSERT_EQ(plain.size(), forced.size());
   for (size_t i = 0; i < plain.size(); ++i) {
     EXPECT_TRUE(forced[i].runs) << forced[i].name;
@@ -133,6 +139,18 @@ TEST(FramePlan, ForcingRunsEverythingAndKeepsTheReason) {
       EXPECT_NE(forced[i].reason.find("forced"), std::string::npos) << forced[i].reason;
     }
   }
+}
+
+TEST(FramePlan, ForcingLeavesTheArtistsChoicesAlone) {
+  // One sample shows the lamps' centres, and soft shadows can be switched off: both change the
+  // picture.
+  for (const plan::PlanSettings& settings :
+       {plan::PlanSettings{.samples = 1, .force_all_effects = true, .passes = {}},
+        plan::PlanSettings{.samples = 4,
+        .soft_shadows = false,
+        .force_all_effects = true,
+        .passes = {}}})
+    EXPECT_FALSE(plan::runs(plan::make_plan(furnished(), settings), "soft_shadows"));
 }
 
 TEST(FramePlan, KnowsItsEffectsByName) {
@@ -155,9 +173,9 @@ TEST(FilmPasses, BringTheirDivisorsAndCombined) {
 }
 
 TEST(FilmPasses, AreFoundByBlendersNames) {
-  const std::pair<const char*, int> names[] = {
-      {"Combined", 4}, {"Depth", 1},    {"Normal", 3},   {"DiffCol", 3}, {"DiffDir", 3},
-      {"GlossCol", 3}, {"GlossDir", 3}, {"Emit", 3},     {"Env", 3}};
+  const std::pair<const char*, int> names[] = {{"Combined", 4}, {"Depth", 1},   {"Normal", 3},
+                                               {"DiffCol", 3},  {"DiffDir", 3}, {"GlossCol", 3},
+                                               {"GlossDir", 3}, {"Emit", 3},    {"Env", 3}};
   for (const auto& [name, channels] : names) {
     const film::Pass pass = film::find_pass(name);
     ASSERT_NE(pass, film::Pass::kCount) << name;

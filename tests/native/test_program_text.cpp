@@ -53,9 +53,9 @@ TEST(ProgramText, IncludesEachFileOnce) {
   EXPECT_EQ(count(e.text, "#include"), 0);
 }
 
-// Follows the #line directives through a text: what a driver's message about each line is translated
-// to must name the file and the line that the text came from, even where the driver forgets the
-// file's number, as Mesa does.
+// Follows the #line directives through a text: what a driver's message about each line is
+// translated to must name the file and the line that the text came from, even where the driver
+// forgets the file's number, as Mesa does.
 void expect_lines_map(const ExpandedSource& e, const std::map<std::string, std::string>& files) {
   static const std::regex directive(R"(#line (\d+) (\d+))"), place(R"((.+):(\d+): x\n)");
   size_t number = 0;
@@ -72,8 +72,8 @@ void expect_lines_map(const ExpandedSource& e, const std::map<std::string, std::
     const std::vector<std::string> original = lines_of(files.at(match[1]));
     const size_t index = std::stoul(match[2]) - 1;
     ASSERT_LT(index, original.size()) << message;
-    const bool ours = original[index].find("#include") == 0 ||
-                      original[index].find("#pragma once") == 0;
+    const bool ours =
+        original[index].find("#include") == 0 || original[index].find("#pragma once") == 0;
     if (ours && line.empty()) continue;
     ASSERT_EQ(line, original[index]) << message;
     ++checked;
@@ -93,10 +93,10 @@ TEST(ProgramText, LineDirectivesNameFileAndLine) {
 }
 
 TEST(ProgramText, EveryShaderOfTheSourcesMapsItsLines) {
-  for (const char* name : {"rasterize/surfaces.comp", "rasterize/raster.vert",
-                           "rasterize/raster.frag", "realtime/direct_light.comp",
-                           "realtime/compose.comp", "realtime/world_project.comp",
-                           "realtime/background.comp", "rasterize/bin_offsets.comp"}) {
+  for (const char* name :
+       {"rasterize/surfaces.comp", "rasterize/raster.vert", "rasterize/raster.frag",
+        "realtime/direct_light.comp", "realtime/compose.comp", "realtime/world_project.comp",
+        "realtime/background.comp", "rasterize/bin_offsets.comp"}) {
     ProgramSource s;
     s.snippets["generated/material.glsl"] = "// one\n// two\n";
     s.snippets["generated/world.glsl"] = "// one\n// two\n";

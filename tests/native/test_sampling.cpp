@@ -97,8 +97,7 @@ double star_discrepancy(uint32_t count, uint32_t seed, uint32_t dimension) {
   for (int a = 1; a <= 64; ++a)
     for (int b = 1; b <= 64; ++b) {
       int inside = 0;
-      for (const glm::vec2& p : points)
-        inside += p.x < float(a) / 64 && p.y < float(b) / 64;
+      for (const glm::vec2& p : points) inside += p.x < float(a) / 64 && p.y < float(b) / 64;
       worst = std::max(worst, std::abs(inside / double(count) - a * b / 4096.0));
     }
   return worst;

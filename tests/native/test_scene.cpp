@@ -61,8 +61,7 @@ TEST_F(SceneChanges, NewRangesTouchTheDrawsToo) {
 }
 
 TEST_F(SceneChanges, ANewMeshTouchesTheDraws) {
-  expect(of([&] { scene.set_mesh(9, floor_at(0, 1).mesh()); }),
-         {.meshes = {9}, .instances = true});
+  expect(of([&] { scene.set_mesh(9, floor_at(0, 1).mesh()); }), {.meshes = {9}, .instances = true});
 }
 
 TEST_F(SceneChanges, RemovalsAreReportedOnce) {
@@ -95,7 +94,9 @@ TEST_F(SceneChanges, NewInstancesIncludeTheirMatrices) {
 TEST_F(SceneChanges, ADraggedSliderTouchesParametersAlone) {
   expect(of([&] { scene.set_material_params(3, {glm::vec4(1, 0, 0, 1)}); }),
          {.material_params = {3}});
-  expect(of([&] { scene.set_material_params(3, {glm::vec4(1), glm::vec4(2)}); }),
+  expect(of([&] {
+           scene.set_material_params(3, {glm::vec4(1), glm::vec4(2)});
+         }),
          {.materials = {3}});
 }
 
@@ -153,8 +154,9 @@ TEST_F(SceneChanges, AnObjectComesBackWhenItsMatrixIsMended) {
 
 TEST(SceneLights, DropsLampsThatCannotShine) {
   scene::Scene scene;
-  scene::Light dark = point({0, 0, 1}, 0), black = point({0, 0, 1}, 5), broken = point({0, 0, 1}, 5),
-               energy = point({0, 0, 1}, kNaN), color = point({0, 0, 1}, 5);
+  scene::Light dark = point({0, 0, 1}, 0), black = point({0, 0, 1}, 5),
+               broken = point({0, 0, 1}, 5), energy = point({0, 0, 1}, kNaN),
+               color = point({0, 0, 1}, 5);
   black.color = glm::vec3(0);
   broken.object_to_world[3].x = std::numeric_limits<float>::infinity();
   color.color.g = kNaN;
@@ -176,8 +178,8 @@ TEST(SceneFacts, CountWhatInstancesUse) {
   scene.set_mesh(1, two.mesh());
   scene.set_material(1, material(kLambert, {}, {.alpha = true, .glossy = false}));
   scene.set_material(2, material(kLambert, {}, {.emission = true, .glossy = false}));
-  scene.set_material(
-      3, material(kLambert, {}, {.normal_map = true, .glossy = true, .transmission = true}));
+  scene.set_material(3, material(kLambert, {},
+                                 {.normal_map = true, .glossy = true, .transmission = true}));
   scene.set_instances({{1, glm::mat4(1), 0}, {1, glm::mat4(1), 0}, {99, glm::mat4(1), 0}}, {1, 2});
   scene::Facts facts = scene.facts();
   EXPECT_EQ(facts.triangles, 8);
@@ -236,8 +238,8 @@ TEST(MakeImage, PremultipliesStraightColoursInTheirCodes) {
 
 TEST(MakeImage, KeepsFloatsFinite) {
   const float rgba[4] = {kNaN, 2, std::numeric_limits<float>::infinity(), 0.5f};
-  const scene::Image image = scene::make_image("i", 1, 1, std::span<const float>(rgba), true,
-                                               scene::AlphaMode::kStraight);
+  const scene::Image image =
+      scene::make_image("i", 1, 1, std::span<const float>(rgba), true, scene::AlphaMode::kStraight);
   EXPECT_EQ(image.floats, (std::vector<float>{0, 1, 0, 0.5f}));
   EXPECT_TRUE(image.is_float());
 }

@@ -46,7 +46,8 @@ constexpr const char* kEverything =
     "  closure_principled_v4(surface, vec3(0.2), p);\n"
     "}\n";
 
-constexpr const char* kPlainWorld = "vec3 evaluate_world(vec3 direction) { return param(0).rgb; }\n";
+constexpr const char* kPlainWorld =
+    "vec3 evaluate_world(vec3 direction) { return param(0).rgb; }\n";
 constexpr const char* kImageWorld =
     "vec3 evaluate_world(vec3 direction) {\n"
     "  return sample_environment(0, direction).rgb * luminance(param(0).rgb);\n"
@@ -78,16 +79,16 @@ class Shaders : public ::testing::Test {
   }
 
   static void enumerate() {
-    const char* plain =
-        "void evaluate_material(const Hit hit, inout Surface surface) {\n"
-        "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
-        "}\n";
+    const char* plain = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                        "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
+                        "}\n";
     for (bool depth_only : {false, true})
       add(rasterize::raster_program(nullptr, {.depth_only = depth_only}));
     for (bool alpha : {false, true})
-      for (const auto& m : {material(plain, 0, alpha), material(kLambert, 0, alpha),
-                            material(kEverything, 0, alpha), material(kEverything, 2, alpha),
-                            material(kEverything, context->device().max_texture_units - 8, alpha)}) {
+      for (const auto& m :
+           {material(plain, 0, alpha), material(kLambert, 0, alpha),
+            material(kEverything, 0, alpha), material(kEverything, 2, alpha),
+            material(kEverything, context->device().max_texture_units - 8, alpha)}) {
         if (alpha)
           for (bool depth_only : {false, true})
             add(rasterize::raster_program(&m, {.depth_only = depth_only}));
@@ -166,8 +167,8 @@ TEST_F(Shaders, TheReferenceCompilerAcceptsEveryPermutation) {
       list << name << '\n';
     }
   list.close();
-  const std::string command = fmt::format(
-      "cd '{}' && xargs -a list -n 40 glslangValidator > log 2>&1", folder.string());
+  const std::string command =
+      fmt::format("cd '{}' && xargs -a list -n 40 glslangValidator > log 2>&1", folder.string());
   if (std::system(command.c_str()) != 0) {
     // The first message of each program that has one; a mistake in a shared file shows in many.
     std::ifstream log(folder / "log");

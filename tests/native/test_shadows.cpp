@@ -62,49 +62,70 @@ TestScene blocked_floor(const scene::Light& lamp) {
 const gpu_scene::Camera kOblique = perspective({0, -7, 3.5}, {0, 0, 0}, 0.7, 64, 64);
 
 TEST(Shadows, OfASunAreTheBlockersParallelProjection) {
-  for (const glm::dvec3& direction : {glm::dvec3(0, 0, -1), glm::dvec3(0.5, 0.3, -1),
-                                      glm::dvec3(-1.2, -0.4, -1)})
+  for (const glm::dvec3& direction :
+       {glm::dvec3(0, 0, -1), glm::dvec3(0.5, 0.3, -1), glm::dvec3(-1.2, -0.4, -1)})
     // The map spans about 8 m in 512 texels: two texels of filter, seen along the slope.
-    expect_shadow(blocked_floor(sun(glm::vec3(direction), 2)), kOblique, {0, 0, 0}, {0, 0, 1},
-                  [&](const glm::dvec3& p) {
-                    const glm::dvec3 at = p - direction / -direction.z * 1.0;
-                    return square_distance({at.x, at.y}, 0.5);
-                  },
-                  0.06);
+    expect_shadow(
+        blocked_floor(sun(glm::vec3(direction), 2)), kOblique, {0, 0, 0}, {0, 0, 1},
+        [&](const glm::dvec3& p) {
+          const glm::dvec3 at = p - direction / -direction.z * 1.0;
+          return square_distance({at.x, at.y}, 0.5);
+        },
+        0.06);
+}
+
+TEST(Shadows, FallOnBentNormalsAsOnStraightOnes) {
+  const glm::dvec3 direction(0.5, 0.3, -1);
+  for (float lean : {0.4f, -0.7f}) {
+    TestScene s = blocked_floor(sun(glm::vec3(direction), 2));
+    Geometry bent = floor_at(0, 3);
+    bent.normals.assign(4, {std::sin(lean), 0, std::cos(lean)});
+    s.meshes[0] = bent.mesh();
+    expect_shadow(
+        s, kOblique, {0, 0, 0}, {0, 0, 1},
+        [&](const glm::dvec3& p) {
+          const glm::dvec3 at = p - direction;
+          return square_distance({at.x, at.y}, 0.5);
+        },
+        0.08);
+  }
 }
 
 TEST(Shadows, OfAPointAreTheBlockersCentralProjection) {
   for (const glm::dvec3& lamp : {glm::dvec3(0, 0, 2), glm::dvec3(0.6, -0.4, 2.5)})
     // At 2.5 m a face of 512 texels has texels of .01 m, twice that projected past the blocker.
-    expect_shadow(blocked_floor(point(glm::vec3(lamp), 20)), kOblique, {0, 0, 0}, {0, 0, 1},
-                  [&](const glm::dvec3& p) {
-                    const glm::dvec3 at = lamp + (p - lamp) * ((lamp.z - 1) / lamp.z);
-                    return square_distance({at.x, at.y}, 0.5);
-                  },
-                  0.02);
+    expect_shadow(
+        blocked_floor(point(glm::vec3(lamp), 20)), kOblique, {0, 0, 0}, {0, 0, 1},
+        [&](const glm::dvec3& p) {
+          const glm::dvec3 at = lamp + (p - lamp) * ((lamp.z - 1) / lamp.z);
+          return square_distance({at.x, at.y}, 0.5);
+        },
+        0.02);
 }
 
 TEST(Shadows, OfASpotFollowItsConeToo) {
   const glm::dvec3 lamp(0.3, 0.2, 3);
   for (float size : {1.2f, 2.6f})  // a flat map, and a cube
-    expect_shadow(blocked_floor(spot(glm::vec3(lamp), glm::vec3(-0.1f, 0, -1), 20, size, 0.3f)),
-                  kOblique, {0, 0, 0}, {0, 0, 1},
-                  [&](const glm::dvec3& p) {
-                    const glm::dvec3 at = lamp + (p - lamp) * ((lamp.z - 1) / lamp.z);
-                    return square_distance({at.x, at.y}, 0.5);
-                  },
-                  0.03);
+    expect_shadow(
+        blocked_floor(spot(glm::vec3(lamp), glm::vec3(-0.1f, 0, -1), 20, size, 0.3f)), kOblique,
+        {0, 0, 0}, {0, 0, 1},
+        [&](const glm::dvec3& p) {
+          const glm::dvec3 at = lamp + (p - lamp) * ((lamp.z - 1) / lamp.z);
+          return square_distance({at.x, at.y}, 0.5);
+        },
+        0.03);
 }
 
 TEST(Shadows, OfAnAreaInOneSampleAreThoseOfItsCentre) {
   const glm::dvec3 lamp(0.3, 0.2, 3);
-  expect_shadow(blocked_floor(area(glm::vec3(lamp), {0, 0, -1}, 20, scene::AreaShape::kSquare, 1, 1)),
-                kOblique, {0, 0, 0}, {0, 0, 1},
-                [&](const glm::dvec3& p) {
-                  const glm::dvec3 at = lamp + (p - lamp) * ((lamp.z - 1) / lamp.z);
-                  return square_distance({at.x, at.y}, 0.5);
-                },
-                0.02);
+  expect_shadow(
+      blocked_floor(area(glm::vec3(lamp), {0, 0, -1}, 20, scene::AreaShape::kSquare, 1, 1)),
+      kOblique, {0, 0, 0}, {0, 0, 1},
+      [&](const glm::dvec3& p) {
+        const glm::dvec3 at = lamp + (p - lamp) * ((lamp.z - 1) / lamp.z);
+        return square_distance({at.x, at.y}, 0.5);
+      },
+      0.02);
 }
 
 TEST(Shadows, OfAPointFallToAllSixSides) {
@@ -127,11 +148,12 @@ TEST(Shadows, OfAPointFallToAllSixSides) {
       SCOPED_TRACE(fmt::format("side {}{}", side > 0 ? '+' : '-', "xyz"[axis]));
       glm::dvec3 n(0);
       n[axis] = side;
-      expect_shadow(s, perspective(1.2 * n, 3.0 * n, 1.6, 48, 48), 3.0 * n, n,
-                    [&](const glm::dvec3& p) {
-                      return square_distance({p[(axis + 1) % 3] / 3, p[(axis + 2) % 3] / 3}, 0.3);
-                    },
-                    0.02);
+      expect_shadow(
+          s, perspective(1.2 * n, 3.0 * n, 1.6, 48, 48), 3.0 * n, n,
+          [&](const glm::dvec3& p) {
+            return square_distance({p[(axis + 1) % 3] / 3, p[(axis + 2) % 3] / 3}, 0.3);
+          },
+          0.02);
     }
 }
 
@@ -142,12 +164,13 @@ TEST(Shadows, AreTheSameAcrossTheSeamsOfACube) {
   s.add_object(floor_at(0, 6), {white});
   s.add_object(quad({0, 0, 1}, {6, 0, 0}, {0, 0.2f, 0}), {white});
   s.lights = {point({0, 0.7f, 1.5f}, 50)};
-  expect_shadow(s, orthographic({0, -1.2, 0.9}, {0, -1.2, 0}, 2.5, 64, 40), {0, 0, 0}, {0, 0, 1},
-                [](const glm::dvec3& p) {
-                  const double y = 0.7 + (p.y - 0.7) / 3;  // at the bar's height
-                  return std::abs(y) - 0.2;
-                },
-                0.03);
+  expect_shadow(
+      s, orthographic({0, -1.2, 0.9}, {0, -1.2, 0}, 2.5, 64, 40), {0, 0, 0}, {0, 0, 1},
+      [](const glm::dvec3& p) {
+        const double y = 0.7 + (p.y - 0.7) / 3;  // at the bar's height
+        return std::abs(y) - 0.2;
+      },
+      0.03);
 }
 
 TEST(Shadows, AreCastByWhatTheCameraCannotSee) {

@@ -32,8 +32,7 @@ std::vector<Case> cases() {
   for (scene::Light& lamp : silent.lights) lamp.cast_shadow = false;
   all.push_back({"lamps without shadows", silent, life.camera});
   TestScene soft = life.scene;
-  soft.lights.push_back(
-      area({0, -1, 4}, {0, 0, -1}, 200, scene::AreaShape::kSquare, 1, 1));
+  soft.lights.push_back(area({0, -1, 4}, {0, 0, -1}, 200, scene::AreaShape::kSquare, 1, 1));
   soft.lights[0].angle = 0.1f;
   all.push_back({"soft lamps", soft, life.camera});
   TestScene rich = life.scene;
@@ -51,8 +50,10 @@ std::vector<Case> cases() {
 TEST(SkippedEffects, DoNotChangeThePicture) {
   for (uint32_t samples : {1u, 4u})
     for (const Case& c : cases()) {
-      engine::RenderRequest r = request(
-          c.camera, {Pass::kDiffDir, Pass::kDiffCol, Pass::kNormal, Pass::kDepth, Pass::kEnv}, samples);
+      engine::RenderRequest r =
+          request(c.camera,
+                  {Pass::kDiffDir, Pass::kDiffCol, Pass::kNormal, Pass::kDepth, Pass::kEnv},
+                  samples);
       const Picture planned = render(c.scene, r);
       r.force_all_effects = true;
       const Picture forced = render(c.scene, r);

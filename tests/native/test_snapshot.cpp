@@ -36,8 +36,8 @@ class Snapshot : public ::testing::Test {
     setup.materials[0].textures = {{a, true, scene::TextureUse::Extension::kClip}};
     setup.materials[0].attributes = {"uv", "color"};
     setup.add_object(g, {1, 2}, glm::mat4(3.0f));
-    setup.lights = {sun({0, 0, -1}, 3), area({0, 0, 1}, {0, 0, -1}, 5, scene::AreaShape::kEllipse,
-                                             2, 3)};
+    setup.lights = {sun({0, 0, -1}, 3),
+                    area({0, 0, 1}, {0, 0, -1}, 5, scene::AreaShape::kEllipse, 2, 3)};
     setup.lights[1].cast_shadow = false;
     setup.world = world("vec3 evaluate_world(vec3 d) { return abs(d); }", {glm::vec4(4)});
     setup.install(scene);
@@ -228,18 +228,21 @@ TEST_F(Snapshot, OtherFilesAreRefused) {
   expect_error([&] { engine::read_snapshot(path, scene); }, "version");
   rewrite("");
   expect_error([&] { engine::read_snapshot(path, scene); }, "cut off");
-  expect_error([&] { engine::read_snapshot((folder / "none").string(), scene); }, "cannot be opened");
+  expect_error([&] { engine::read_snapshot((folder / "none").string(), scene); },
+               "cannot be opened");
   expect_error([&] { engine::read_snapshot(folder.string(), scene); }, "snapshot");
 }
 
 TEST_F(Snapshot, AWriteThatFailsLeavesNoFile) {
   const fs::path missing = folder / "missing" / "a.scene";
-  expect_error([&] { engine::write_snapshot(missing.string(), scene, request); }, "cannot be written");
+  expect_error([&] { engine::write_snapshot(missing.string(), scene, request); },
+               "cannot be written");
   EXPECT_FALSE(fs::exists(folder / "missing"));
 
   const fs::path taken = folder / "folder";
   fs::create_directories(taken / "inside");
-  expect_error([&] { engine::write_snapshot(taken.string(), scene, request); }, "cannot be written");
+  expect_error([&] { engine::write_snapshot(taken.string(), scene, request); },
+               "cannot be written");
   EXPECT_TRUE(fs::is_directory(taken / "inside"));
   EXPECT_FALSE(fs::exists(taken.string() + ".part"));
 

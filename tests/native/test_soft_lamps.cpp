@@ -54,9 +54,9 @@ double from_area(const scene::Light& lamp, double a, const glm::dvec3& p) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const double u = (i + 0.5) / n, v = (j + 0.5) / n;
-      const glm::dvec2 q = disk ? 0.5 * std::sqrt(u) * glm::dvec2(std::cos(2 * kPi * v),
-                                                                  std::sin(2 * kPi * v))
-                                : glm::dvec2(u - 0.5, v - 0.5);
+      const glm::dvec2 q =
+          disk ? 0.5 * std::sqrt(u) * glm::dvec2(std::cos(2 * kPi * v), std::sin(2 * kPi * v))
+               : glm::dvec2(u - 0.5, v - 0.5);
       const bool same = lamp.shape == AreaShape::kSquare || lamp.shape == AreaShape::kDisk;
       const double size_y = same ? lamp.size_x : lamp.size_y;
       const glm::dvec3 at = glm::dvec3(m * glm::dvec4(q.x * lamp.size_x, q.y * size_y, 0, 1));
@@ -74,9 +74,9 @@ TEST(SoftLamps, AreasGiveRadianceTimesTheFormFactor) {
     float x, y;
     double area;
   };
-  for (const Case& c : {Case{AreaShape::kSquare, 1, 7, 1}, Case{AreaShape::kRectangle, 1, 0.4f, 0.4},
-                        Case{AreaShape::kDisk, 1, 7, kPi / 4},
-                        Case{AreaShape::kEllipse, 1, 0.4f, kPi / 10}}) {
+  for (const Case& c :
+       {Case{AreaShape::kSquare, 1, 7, 1}, Case{AreaShape::kRectangle, 1, 0.4f, 0.4},
+        Case{AreaShape::kDisk, 1, 7, kPi / 4}, Case{AreaShape::kEllipse, 1, 0.4f, kPi / 10}}) {
     const scene::Light lamp = area({0.2f, 0.1f, 1.5f}, {0.3f, 0.1f, -1}, 20, c.shape, c.x, c.y);
     expect_on_floor(lamp, [&](const glm::dvec3& p) { return from_area(lamp, c.area, p); });
   }
@@ -91,12 +91,11 @@ TEST(SoftLamps, AScaledAreaKeepsItsPower) {
 TEST(SoftLamps, ADiskAboveGivesTheClosedForm) {
   // Measured in Cycles: a disk of 1 m at 1 m gives L sin^2 = .0636627 a watt.
   const Picture picture =
-      render(lit_floor(area({0, 0, 1}, {0, 0, -1}, 1, AreaShape::kDisk, 1, 1)),
-             [] {
-               engine::RenderRequest r = many();
-               r.camera = orthographic({0, 0, 9}, {0, 0, 0}, 1e-3, 4, 4);
-               return r;
-             }());
+      render(lit_floor(area({0, 0, 1}, {0, 0, -1}, 1, AreaShape::kDisk, 1, 1)), [] {
+        engine::RenderRequest r = many();
+        r.camera = orthographic({0, 0, 9}, {0, 0, 0}, 1e-3, 4, 4);
+        return r;
+      }());
   EXPECT_NEAR(mean(picture[Pass::kDiffDir]), 0.0636627, kMonteCarlo * 0.0636627);
 }
 
@@ -144,9 +143,8 @@ double visible_share(const scene::Light& lamp, const glm::dvec3& p, bool disk) {
     for (int j = 0; j < n; ++j) {
       const glm::dvec2 q((i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5);
       if (disk && glm::length(q) > 0.5) continue;
-      const glm::dvec3 at =
-          glm::dvec3(glm::dmat4(lamp.object_to_world) *
-                     glm::dvec4(q.x * lamp.size_x, q.y * lamp.size_x, 0, 1));
+      const glm::dvec3 at = glm::dvec3(glm::dmat4(lamp.object_to_world) *
+                                       glm::dvec4(q.x * lamp.size_x, q.y * lamp.size_x, 0, 1));
       const glm::dvec3 crossing = p + (at - p) * (0.5 / at.z);
       ++all;
       seen += std::abs(crossing.x) > 0.3 || std::abs(crossing.y) > 0.3;

@@ -12,12 +12,13 @@ namespace {
 
 using gpu_scene::Camera;
 
-// The point at `depth` along the axis on the ray of pixel coordinates (x, y), relative to the origin.
+// The point at `depth` along the axis on the ray of pixel coordinates (x, y), relative to the
+// origin.
 glm::dvec3 relative_at(const shared::View& view, double x, double y, double depth) {
   const auto v = [](const glm::vec4& a) { return glm::dvec3(a); };
   return v(view.ray_origin) + x * v(view.ray_origin_dx) + y * v(view.ray_origin_dy) +
-         depth * (v(view.ray_direction) + x * v(view.ray_direction_dx) +
-                  y * v(view.ray_direction_dy));
+         depth *
+             (v(view.ray_direction) + x * v(view.ray_direction_dx) + y * v(view.ray_direction_dy));
 }
 
 std::vector<Camera> cameras(const glm::dvec3& eye) {
@@ -60,8 +61,9 @@ TEST(CameraView, RaysProjectBackToTheirPixel) {
 TEST(CameraView, RaysAreThoseOfTheMatrices) {
   for (const Camera& camera : cameras({3, -2, 1})) {
     const shared::View view = gpu_scene::camera_view(camera, {0, 0});
-    for (const glm::dvec2& pixel : {glm::dvec2(0, 0), glm::dvec2(camera.width, 0),
-                                    glm::dvec2(7.5, 1.25), glm::dvec2(camera.width, camera.height)}) {
+    for (const glm::dvec2& pixel :
+         {glm::dvec2(0, 0), glm::dvec2(camera.width, 0), glm::dvec2(7.5, 1.25),
+          glm::dvec2(camera.width, camera.height)}) {
       const Ray ray = camera_ray(camera, pixel.x, pixel.y);
       for (double depth : {1.0, 20.0}) {
         const glm::dvec3 p =
@@ -77,8 +79,8 @@ TEST(CameraView, DepthIsReversedFromNearToFar) {
   for (size_t c = 0; c < all.size(); ++c) {
     const shared::View view = gpu_scene::camera_view(all[c], {0, 0});
     const auto depth_of = [&](double depth) {
-      const glm::dvec4 clip = glm::dmat4(view.clip_from_relative) *
-                              glm::dvec4(relative_at(view, 3, 2, depth), 1);
+      const glm::dvec4 clip =
+          glm::dmat4(view.clip_from_relative) * glm::dvec4(relative_at(view, 3, 2, depth), 1);
       return clip.z / clip.w;
     };
     EXPECT_NEAR(depth_of(kNear[c]), 1, 3e-6);
@@ -159,8 +161,8 @@ TEST(CameraCheck, RefusesSizesThatCannotBeRendered) {
 }
 
 TEST(CameraCheck, RefusesMatricesThatAreNotFinite) {
-  for (double broken : {std::numeric_limits<double>::quiet_NaN(),
-                        std::numeric_limits<double>::infinity()})
+  for (double broken :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     for (int i = 0; i < 16; ++i) {
       Camera place = perspective({0, 0, 0}, {1, 0, 0}, 0.8, 64, 32), lens = place;
       place.world_to_camera[i / 4][i % 4] = broken;
