@@ -1,7 +1,9 @@
-// Runs the rendering tests; the shared engine ends before the process does, on its own terms.
+// Runs the rendering tests, and ends the engine that they share before the driver unloads.
 #include "support.h"
 
 int main(int count, char** words) {
   ::testing::InitGoogleTest(&count, words);
-  return RUN_ALL_TESTS();
+  const int status = RUN_ALL_TESTS();
+  panoptes::test::close_shared_engine();
+  return status;
 }

@@ -286,10 +286,16 @@ double Picture::value(film::Pass pass, int x, int y, int channel) const {
   return passes.at(pass)[size_t((y * width + x) * film::info(pass).channels + channel)];
 }
 
-engine::Engine& shared_engine() {
-  static engine::Engine engine({.prefer_software = false});
-  return engine;
+namespace {
+std::unique_ptr<engine::Engine> the_engine;
 }
+
+engine::Engine& shared_engine() {
+  if (!the_engine) the_engine = std::make_unique<engine::Engine>();
+  return *the_engine;
+}
+
+void close_shared_engine() { the_engine.reset(); }
 
 film::PassSet pass_set(const std::vector<film::Pass>& passes) {
   film::PassSet set;

@@ -118,8 +118,9 @@ struct Picture {
   double value(film::Pass pass, int x, int y, int channel = 0) const;
 };
 
-// One engine for the process, closed before main ends.
+// One engine for the process, made when it is first asked for.
 engine::Engine& shared_engine();
+void close_shared_engine();
 
 film::PassSet pass_set(const std::vector<film::Pass>& passes);
 // Asks for `passes` and Combined with small shadow maps; samples 0 .. `samples` - 1.

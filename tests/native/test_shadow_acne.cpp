@@ -177,17 +177,16 @@ TEST(ShadowAcne, FlatFacetsAreLitWhereTheyFaceTheLamp) {
 
 TEST(ShadowAcne, ASmallObjectOnALargeFloorIsClean) {
   // The map is spread over the floor, so that the object has few texels.
-  for (int resolution : {512, 2048}) {
-    TestScene s;
-    const Id white = s.add_material(lambert());
-    s.add_object(sphere({0, 0, 0.5f}, 0.5f, 64), {white});
-    s.add_object(floor_at(-2, 20), {white});
-    s.lights = {sun({1, 0.3f, -0.4f}, 1)};
-    expect_clean(s, perspective({0.2, -1.6, 1.0}, {0, 0, 0.6}, 0.4, 48, 48), resolution, full_sun,
-                 fmt::format("map {}", resolution),
-                 // At 512 the sphere is twelve texels wide.
-                 resolution < 1024 ? 2 * kInvisible : kInvisible);
-  }
+  TestScene s;
+  const Id white = s.add_material(lambert());
+  s.add_object(sphere({0, 0, 0.5f}, 0.5f, 64), {white});
+  s.add_object(floor_at(-2, 20), {white});
+  s.lights = {sun({1, 0.3f, -0.4f}, 1)};
+  const gpu_scene::Camera camera = perspective({0.2, -1.6, 1.0}, {0, 0, 0.6}, 0.4, 48, 48);
+  expect_clean(s, camera, 2048, full_sun, "map 2048");
+  // At 512 the sphere is twelve texels wide, and its terminator is as coarse as they are; in sum it
+  // must not cost a thousandth of the light.
+  EXPECT_LT(acne(s, camera, 512, full_sun).mean, 1e-3);
 }
 
 TEST(ShadowAcne, ContactShadowsReachTheirObject) {
