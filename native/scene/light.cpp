@@ -89,7 +89,8 @@ LightSample sample_light(const Light& light, float u, float v, const glm::vec3& 
     sample.position += p.x * size.x * glm::vec3(light.object_to_world[0]) +
                        p.y * size.y * glm::vec3(light.object_to_world[1]);
   } else if (light.radius > 0) {
-    frame(unit(target - sample.position, {0, 0, -1}), x, y);
+    const bool spot = light.type == LightType::kSpot;
+    frame(spot ? sample.direction : unit(target - sample.position, {0, 0, -1}), x, y);
     sample.position += light.radius * (d.x * x + d.y * y);
   }
   return sample;

@@ -42,8 +42,8 @@ struct LightSample {
   float weight = 1;    // of the lamp's power
 };
 
-// The point of the lamp that (u, v) in [0,1)^2 stands for; uniform over the sun's disk, a point's
-// or spot's sphere (seen from `target`, so that it is the disk that faces it), an area's shape.
+// The point of the lamp that (u, v) in [0,1)^2 stands for; uniform over the sun's disk, the disk of a
+// point that faces `target`, the disk of a spot square to its axis, an area's shape.
 LightSample sample_light(const Light& light, float u, float v, const glm::vec3& target);
 // Its centre.
 LightSample light_center(const Light& light);

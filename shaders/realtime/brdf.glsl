@@ -47,10 +47,11 @@ float bump_shadowing(vec3 smooth_normal, vec3 n, vec3 l) {
   return g * (1.0 + g - g * g);
 }
 
+// Measured in Cycles 3.4: the cone's smooth step times the cosine, as of a disk square to the axis.
 float spot_falloff(vec2 cone, float cosine) {
   if (cosine <= cone.x) return 0.0;
   float t = clamp((cosine - cone.x) * cone.y, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
+  return cosine * t * t * (3.0 - 2.0 * t);
 }
 
 // One-sided Lambertian emitter; `spread` narrows it (Cycles' formula, measured).

@@ -116,8 +116,8 @@ void main() {
       float squared = max(dot(d, d), 1.0e-20);
       to_light = d * inversesqrt(squared);
       irradiance /= squared + light.position.w * light.position.w;
-      // Points and spots with a radius are disks that face whatever they light.
-      if (light.type != LIGHT_AREA)
+      // Points with a radius are disks that face whatever they light.
+      if (light.type == LIGHT_POINT)
         irradiance *= max(dot(safe_unit(light.center.xyz - g.position, to_light), to_light), 0.0);
       float cosine = -dot(to_light, light.axis.xyz);
       if (light.type == LIGHT_SPOT) irradiance *= spot_falloff(light.cone.xy, cosine);

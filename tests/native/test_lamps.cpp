@@ -94,7 +94,7 @@ TEST(Lamps, ASpotHasCyclesProfile) {
           const glm::dvec3 d = lamp - p;
           const double squared = glm::dot(d, d), cosine = -glm::dot(d, axis) / std::sqrt(squared);
           return 20 / (4 * kPi * kPi * squared) * d.z / std::sqrt(squared) *
-                 (cosine <= outer ? 0 : smoothstep((cosine - outer) / width));
+                 (cosine <= outer ? 0 : cosine * smoothstep((cosine - outer) / width));
         },
         // The profile divides a difference of cosines, good to 1e-7, by the blend's width, .025 at
         // least here, and its slope is 1.5 at most: 6e-6 of the brightest value, which is .1.
@@ -113,7 +113,8 @@ TEST(Lamps, ASpotWithoutBlendHasAHardEdge) {
       const double r = std::hypot(p.x, p.y), edge = 2 * std::tan(0.4);
       if (std::abs(r - edge) < 1e-4) continue;  // on the edge itself
       const double squared = r * r + 4;
-      const double full = 20 / (4 * kPi * kPi * squared) * 2 / std::sqrt(squared);
+      // The lamp looks straight down: the cosines at the floor and at the lamp are the same.
+      const double full = 20 / (4 * kPi * kPi * squared) * 4 / squared;
       const double value = picture.value(Pass::kDiffDir, x, y);
       EXPECT_NEAR(value, r < edge ? full : 0.0, kRounding * full) << x << " " << y;
       ++(r < edge ? inside : outside);

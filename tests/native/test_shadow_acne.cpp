@@ -213,5 +213,24 @@ TEST(ShadowAcne, ContactShadowsReachTheirObject) {
   EXPECT_GT(dark, 15);
 }
 
+TEST(ShadowAcne, CardsCloseToTheFloorStillShadeIt) {
+  // Five texels above it, so that no more than those may be spent on keeping surfaces clean.
+  const int resolution = 1024;
+  for (const scene::Light& lamp : {sun({0, 0, -1}, 1), sun({1, 0, -1}, 1), point({0, 0, 4}, 100)}) {
+    // Both maps span about 8 m: the floor under the sun, a right angle at 4 m under the point.
+    const float height = 5 * 8.0f / float(resolution);
+    TestScene s;
+    const Id white = s.add_material(lambert());
+    s.add_object(floor_at(0, 4), {white});
+    s.add_object(floor_at(height, 0.5f), {white});
+    s.lights = {lamp};
+    engine::RenderRequest r =
+        request(orthographic({0, 0, 0.5 * height}, {0, 0, 0}, 0.4, 16, 16, 1e-4), {Pass::kDiffDir});
+    r.shadow_resolution = resolution;
+    const Picture picture = render(s, r);
+    for (float v : picture[Pass::kDiffDir]) ASSERT_EQ(v, 0) << "lamp type " << int(lamp.type);
+  }
+}
+
 }  // namespace
 }  // namespace panoptes::test

@@ -37,6 +37,8 @@ SHARED_SCENES = ("sponza_crytek", "foliage_ivy_oak", "igea_deform", "fox_skinned
 # Below half a sample of 64 that just misses a shadow; the same samples are used with shadows and without.
 SHARE_TOLERANCE = 0.005
 EDGE_DISTANCE_PIXELS = 2
+# A pixel as dark as this beside a bright one is background with a few samples of a surface.
+EMPTY_SHARE = 0.05
 
 
 def dilated(mask, pixels):
@@ -62,16 +64,17 @@ def near_shadow_edge(shadowed, unshadowed):
 
 
 def mostly_without_diffuse(albedo):
-    """The pixels of which diffuse surfaces cover less than half, beside pixels with none, from Diffuse Color float[H, W, 3].
+    """The pixels of which diffuse surfaces cover less than half, beside pixels with hardly any.
 
-    Coverage is judged by the brightest pixel around: at the border of a surface with its background, the surface itself.
+    albedo: Diffuse Color, float[H, W, 3]. Coverage is judged by the brightest pixel around: at the border of a
+    surface with its background, the surface itself. Hardly any is below EMPTY_SHARE of that.
     """
     albedo = albedo.sum(axis=2)
     padded = np.pad(albedo, EDGE_DISTANCE_PIXELS)
     height, width = albedo.shape
     around = np.max([padded[y:y + height, x:x + width] for y in range(2 * EDGE_DISTANCE_PIXELS + 1)
                      for x in range(2 * EDGE_DISTANCE_PIXELS + 1)], axis=0)
-    return (albedo < 0.5 * around) & dilated(albedo == 0.0, EDGE_DISTANCE_PIXELS)
+    return (albedo < 0.5 * around) & dilated(albedo <= EMPTY_SHARE * around, EDGE_DISTANCE_PIXELS)
 
 
 def kept_pixels(passes, lamps):

@@ -75,7 +75,7 @@ def test_pixels_with_little_diffuse_surface_are_left_out_beside_none_only():
     albedo = light((5, 20), 0.0)
     albedo[:, 10], albedo[:, 11], albedo[:, 12:] = 0.2 * 0.5, 0.6 * 0.5, 0.5
     # A dark surface beside a bright one is no border with nothing.
-    albedo[:, 16:] = 0.01
+    albedo[:, 16:] = 0.05
     assert np.array_equal(np.flatnonzero(lamps.mostly_without_diffuse(albedo).all(axis=0)), (8, 9, 10))
 
 
