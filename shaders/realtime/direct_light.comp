@@ -74,7 +74,7 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
   float texel = f.origin.w * spread;
   float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1.0e-6);
   float magnitude = max(max(abs(p.x), abs(p.y)), abs(p.z));
-  float bias = texel * (1.0 + 0.5 * min(tangent, 4.0)) + 1.0e-6 * magnitude;
+  float bias = texel * (0.5 + 0.25 * min(tangent, 2.0)) + 1.0e-6 * magnitude;
   float reach = STEEPEST * texel;
 
   const vec2 taps[4] = vec2[4](vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(1.0, 0.0), vec2(0.0, 0.0));

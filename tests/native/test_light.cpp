@@ -143,11 +143,13 @@ TEST(SampleLight, AreasFillTheirShape) {
   }
 }
 
-TEST(SampleLight, PointsAndSpotsAreDisksThatFaceTheTarget) {
+TEST(SampleLight, PointsFaceTheTargetAndSpotsTheirAxis) {
   const glm::vec3 target(4, -2, 1);
   for (scene::Light lamp : {point({1, 1, 3}, 5, 0.7f), spot({1, 1, 3}, {0, 0, -1}, 5, 1, 0)}) {
     lamp.radius = 0.7f;
-    const glm::dvec3 axis = glm::normalize(glm::dvec3(target) - glm::dvec3(1, 1, 3));
+    const glm::dvec3 axis = lamp.type == scene::LightType::kSpot
+                                ? glm::dvec3(0, 0, -1)
+                                : glm::normalize(glm::dvec3(target) - glm::dvec3(1, 1, 3));
     double squares = 0, farthest = 0;
     glm::dvec3 sum(0);
     int count = 0;
