@@ -64,4 +64,4 @@ def test_viewport_recovers(shown):
 
 
 def test_nothing_was_raised(shown):
-    assert 'panoptes/' not in shown['output'], shown['output']
+    assert 'addon/panoptes/' not in shown['output'], shown['output']
