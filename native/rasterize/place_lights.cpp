@@ -81,7 +81,7 @@ shared::Light describe(const scene::Light& lamp, const scene::LightSample& sampl
   light.position = glm::vec4(glm::vec3(relative), disk && centre ? lamp.radius : 0.0f);
   light.center = glm::vec4(glm::vec3(glm::dvec3(lamp.position()) - camera_origin), 0.0f);
   light.axis = glm::vec4(sample.direction, 0.0f);
-  light.power = glm::vec4(lamp.power() * sample.weight, 0.0f);
+  light.power = glm::vec4(lamp.power(), 0.0f);
   light.type = lamp.type == scene::LightType::kPoint  ? shared::LIGHT_POINT
                : lamp.type == scene::LightType::kSun  ? shared::LIGHT_SUN
                : lamp.type == scene::LightType::kSpot ? shared::LIGHT_SPOT

@@ -72,7 +72,7 @@ void make_finite(Light& light) {
   within(light.spread, 0, kPi);
 }
 
-LightSample light_center(const Light& light) { return {light.position(), light.direction(), 1}; }
+LightSample light_center(const Light& light) { return {light.position(), light.direction()}; }
 
 LightSample sample_light(const Light& light, float u, float v, const glm::vec3& target) {
   LightSample sample = light_center(light);

@@ -39,7 +39,6 @@ void make_finite(Light& light);
 struct LightSample {
   glm::vec3 position;  // world space, metres; unused for suns
   glm::vec3 direction; // unit, where the light goes; for points and spots the lamp's own axis
-  float weight = 1;    // of the lamp's power
 };
 
 // The point of the lamp that (u, v) in [0,1)^2 stands for; uniform over the sun's disk, the disk of a
