@@ -93,7 +93,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
         [&](const gpu_scene::GpuShading& world) {
           programs_.get(realtime::background_program(world));
         });
-    realtime_.begin(request.camera, plan, settings, scene, gpu_scene_);
+    realtime_.begin(request.camera, plan, settings,
+                    wanted == 1 && request.first_sample == 0, scene, gpu_scene_);
     warnings = scene.warnings();
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);

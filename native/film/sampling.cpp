@@ -14,9 +14,25 @@ uint32_t hash(uint32_t x) {  // PCG's permutation, as base/packing.glsl
   return (word >> 22u) ^ word;
 }
 
-// (offset + index * step) mod 1 without the loss of low bits that floats would bring.
-float recurrence(uint32_t index, uint32_t step, uint32_t offset) {
-  return float((offset + index * step) >> 8) * (1.0f / 16777216.0f);
+float unit_float(uint32_t bits) { return float(bits >> 8) * (1.0f / 16777216.0f); }
+
+uint32_t reverse_bits(uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
+  x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
+  return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
+}
+
+// A nested (Owen) permutation of the unit interval's 32-bit fractions, as base/packing.glsl has it.
+uint32_t owen_scramble(uint32_t x, uint32_t seed) {
+  x = reverse_bits(x);
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return reverse_bits(x);
 }
 
 // The window's cumulative distribution over [-1, 1].
@@ -33,10 +49,14 @@ double cumulative(double x) {
 }  // namespace
 
 glm::vec2 sample_point(uint32_t index, uint32_t seed, uint32_t dimension) {
-  // 2^32 / p and 2^32 / p^2 for the plastic number p = 1.32471795724474602596.
-  const uint32_t first = hash(seed ^ hash(2 * dimension)),
-                 second = hash(seed ^ hash(2 * dimension + 1));
-  return {recurrence(index, 3242174889u, first), recurrence(index, 2447445414u, second)};
+  const uint32_t key = hash(seed ^ hash(dimension));
+  const uint32_t shuffled = owen_scramble(index, key);
+  // The second dimension's generator matrix: each column is the one before, xor itself shifted.
+  uint32_t second = 0;
+  for (uint32_t i = shuffled, column = 1u << 31; i != 0; i >>= 1, column ^= column >> 1)
+    if (i & 1) second ^= column;
+  return {unit_float(owen_scramble(reverse_bits(shuffled), hash(key))),
+          unit_float(owen_scramble(second, hash(key + 1)))};
 }
 
 float blackman_harris_offset(float u, float width) {

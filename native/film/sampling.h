@@ -9,9 +9,9 @@
 
 namespace panoptes::film {
 
-// The `index`-th point of a sequence in [0,1)^2 that fills the square evenly at every length (the
-// R2 sequence: additive recurrence by the plastic number, Roberts 2018), shifted by a random offset
-// that depends on `seed` and `dimension`.
+// The `index`-th point of Sobol's (0,2)-sequence, shuffled and scrambled by Owen's nested
+// permutations (as in Burley 2020): every power of two of indices is stratified in both dimensions
+// and in each alone. Another `seed` or `dimension` gives an independent sequence.
 glm::vec2 sample_point(uint32_t index, uint32_t seed, uint32_t dimension);
 
 // Maps u in [0,1) to an offset from the pixel's centre, in pixels, distributed as the

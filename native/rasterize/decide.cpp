@@ -36,6 +36,8 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                                                     kinds[i], casting > 1 ? "s" : "",
                                                     casting > 1 ? "" : "s")});
   }
+  effects.push_back(when("emissive_shadows", facts.emission, "light of surfaces casts shadows",
+                         "no material emits light"));
   const bool soft = facts.extended_lamps && settings.soft_shadows && settings.samples > 1;
   effects.push_back({"soft_shadows", soft,
                      soft                       ? "some lamp has an extent; each sample uses a point of it"

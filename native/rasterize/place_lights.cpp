@@ -10,68 +10,12 @@ namespace {
 // Wider cones become cubes: their texels would grow too large towards the rim.
 constexpr double kWidestFlatSpot = 2.1;  // rad, 120 degrees
 
+// A point of a glowing surface is one of very many, whose shadows blur each other's edges: its maps
+// need a quarter of the texels along a side.
+constexpr int kMeshShare = 4;
+
 // llvmpipe cuts an invocation off after 65 535 loop iterations; each lamp takes up to five.
 constexpr uint32_t kLightsPerBatch = 4096;
-
-struct Frame {
-  glm::dvec3 x, y, axis;
-};
-
-Frame frame_along(const glm::dvec3& axis) {
-  const glm::dvec3 up = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-  const glm::dvec3 x = glm::normalize(glm::cross(axis, up));
-  return {x, glm::cross(x, axis), axis};
-}
-
-std::vector<glm::dvec3> corners(const scene::Bounds& b) {
-  std::vector<glm::dvec3> result;
-  for (int i = 0; i < 8; ++i)
-    result.push_back({i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y,
-                      i & 4 ? b.high.z : b.low.z});
-  return result;
-}
-
-// An orthographic view along `direction` around everything that can cast or catch a shadow.
-gpu_scene::LightView sun_view(const glm::dvec3& direction, const scene::Bounds& bounds,
-                              const glm::dvec2& texel_shift, int resolution) {
-  const Frame frame = frame_along(direction);
-  const glm::dvec3 center = 0.5 * (glm::dvec3(bounds.low) + glm::dvec3(bounds.high));
-  glm::dvec3 half(0.0);
-  for (const glm::dvec3& corner : corners(bounds)) {
-    const glm::dvec3 p = corner - center;
-    half = glm::max(half, glm::abs(glm::dvec3(glm::dot(p, frame.x), glm::dot(p, frame.y),
-                                              glm::dot(p, frame.axis))));
-  }
-  // A little more than the scene, relative to it, so that flat scenes have a depth too.
-  const double margin = std::max({half.x, half.y, half.z, 1e-30}) * 1e-3;
-  half += margin;
-  // Two texels of border for the grid's shift and the filter.
-  half.x *= 1.0 + 4.0 / resolution;
-  half.y *= 1.0 + 4.0 / resolution;
-  const glm::dvec2 shift = texel_shift * 2.0 * glm::dvec2(half.x, half.y) / double(resolution);
-  return {center, frame.x, frame.y, frame.axis, half.x, half.y, -half.z, half.z, false, shift};
-}
-
-// Depth range from a lamp at `position` to the scene. Depth is reversed and in float, so that the
-// near plane can be very near.
-glm::dvec2 depth_range(const glm::dvec3& position, const scene::Bounds& bounds) {
-  double farthest = 0;
-  for (const glm::dvec3& corner : corners(bounds))
-    farthest = std::max(farthest, glm::length(corner - position));
-  farthest = std::max(farthest, 1e-30) * 1.001;
-  return {farthest * 1e-5, farthest};
-}
-
-void add_cube(std::vector<gpu_scene::LightView>& faces, const glm::dvec3& position,
-              const scene::Bounds& bounds, int resolution) {
-  const glm::dvec3 axes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  const glm::dvec2 range = depth_range(position, bounds);
-  const double half = 1.0 + 4.0 / resolution;  // a border for the filter
-  for (const glm::dvec3& axis : axes) {
-    const Frame f = frame_along(axis);
-    faces.push_back({position, f.x, f.y, f.axis, half, half, range.x, range.y, true, {0, 0}});
-  }
-}
 
 shared::Light describe(const scene::Light& lamp, const scene::LightSample& sample, bool centre,
                        const glm::dvec3& camera_origin) {
@@ -102,6 +46,18 @@ shared::Light describe(const scene::Light& lamp, const scene::LightSample& sampl
   return light;
 }
 
+shared::Light describe(const MeshLight& light, const glm::dvec3& camera_origin) {
+  shared::Light l{};
+  l.position = glm::vec4(glm::vec3(light.position - camera_origin), light.reach);
+  l.axis = glm::vec4(light.normal, 0.0f);
+  l.power = glm::vec4(light.front, 0.0f);
+  l.center = glm::vec4(light.back, 0.0f);
+  l.type = shared::LIGHT_MESH;
+  l.shadow = shared::NO_SHADOW;
+  l.faces = 1;
+  return l;
+}
+
 shared::ShadowFace describe(const gpu_scene::LightView& face, const glm::dvec3& camera_origin,
                             int resolution) {
   const auto vec = [](const glm::dvec3& v, double w) {
@@ -114,7 +70,7 @@ shared::ShadowFace describe(const gpu_scene::LightView& face, const glm::dvec3& 
   f.x = vec(face.x / face.half_x, face.shift.x / face.half_x);
   f.y = vec(face.y / face.half_y, face.shift.y / face.half_y);
   f.axis = vec(face.axis, face.perspective ? 1.0 : 0.0);
-  f.half_extent = {float(face.half_x), float(face.half_y), 0, 0};
+  f.half_extent = {float(face.half_x), float(face.half_y), 0, float(resolution)};
   f.depth = face.perspective
                 ? glm::vec4(float(face.near_depth * face.far_depth / range),
                             float(-face.near_depth / range), float(face.near_depth), 0)
@@ -123,12 +79,62 @@ shared::ShadowFace describe(const gpu_scene::LightView& face, const glm::dvec3& 
   return f;
 }
 
+// The views of a lamp's shadow map while it stands at `sample`.
+ShadowViews shadow_views(const scene::Light& lamp, const scene::LightSample& sample,
+                         const glm::vec2& texel_shift, const Placement& placement) {
+  const glm::dvec3 position(sample.position), direction(sample.direction);
+  const int resolution = placement.resolution;
+  switch (lamp.type) {
+    case scene::LightType::kSun:
+      return {sun_view(direction, placement.bounds, placement.bounds, glm::dvec2(texel_shift),
+                       resolution)};
+    case scene::LightType::kSpot:
+      if (lamp.spot_size <= kWidestFlatSpot)
+        return {cone_view(position, direction, 0.5 * lamp.spot_size, placement.bounds, resolution)};
+      return surrounding_views(position, std::nullopt, placement.bounds, resolution);
+    case scene::LightType::kArea:
+      return surrounding_views(position, direction, placement.bounds, resolution);
+    default: return surrounding_views(position, std::nullopt, placement.bounds, resolution);
+  }
+}
+
+// Half of space in which a glowing surface gives light, where it is not all of it.
+std::optional<glm::dvec3> side_of(const MeshLight& light) {
+  const bool front = light.front != glm::vec3(0), back = light.back != glm::vec3(0);
+  if (front && back) return std::nullopt;
+  return back ? -glm::dvec3(light.normal) : glm::dvec3(light.normal);
+}
+
+// Appends a lamp and the faces of its maps; a lamp whose faces would not fit opens a batch.
+void append(LightSet& set, PlacedLight placed, const Placement& placement) {
+  const auto drawn = uint32_t(std::count_if(placed.views.begin(), placed.views.end(),
+                                            [](const auto& view) { return view.has_value(); }));
+  if (set.batches.empty() || set.batches.back().light_count == kLightsPerBatch ||
+      set.batches.back().layers + drawn > uint32_t(placement.layers))
+    set.batches.push_back({uint32_t(set.lights.size()), 0, 0});
+  LightBatch& batch = set.batches.back();
+  ++batch.light_count;
+  if (!placed.views.empty()) {
+    placed.light.shadow = uint32_t(set.faces.size());
+    placed.light.faces = uint32_t(placed.views.size());
+  }
+  for (const auto& view : placed.views) {
+    shared::ShadowFace face{};
+    if (view) face = describe(*view, placement.camera_origin, placed.resolution);
+    face.half_extent.z = view ? float(batch.layers++) : -1.0f;
+    set.faces.push_back(face);
+  }
+  set.lights.push_back(std::move(placed));
+}
+
 }  // namespace
 
-LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows,
-                      const std::vector<LightSamplePoint>& points, const scene::Bounds& bounds,
-                      const glm::dvec3& camera_origin, int resolution, int layers) {
+LightSet place_lights(const std::vector<scene::Light>& lamps,
+                      const std::vector<LightSamplePoint>& points,
+                      const std::vector<MeshLight>& mesh_lights, const Placement& placement) {
   LightSet set;
+  const scene::Bounds& bounds = placement.bounds;
+  const bool shadows = placement.shadows && !bounds.empty();
   const glm::vec3 target = bounds.empty() ? glm::vec3(0) : 0.5f * (bounds.low + bounds.high);
   for (size_t i = 0; i < lamps.size(); ++i) {
     const scene::Light& lamp = lamps[i];
@@ -136,38 +142,18 @@ LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows,
     const scene::LightSample sample = points.empty()
                                           ? scene::light_center(lamp)
                                           : scene::sample_light(lamp, point.u, point.v, target);
-    PlacedLight placed{describe(lamp, sample, points.empty(), camera_origin), lamp.type, {}};
-    if (shadows && lamp.cast_shadow && !bounds.empty()) {
-      const glm::dvec3 position(sample.position), direction(sample.direction);
-      if (lamp.type == scene::LightType::kSun) {
-        placed.faces.push_back(
-            sun_view(direction, bounds, glm::dvec2(point.texel_shift), resolution));
-      } else if (lamp.type == scene::LightType::kSpot && lamp.spot_size <= kWidestFlatSpot) {
-        const Frame f = frame_along(direction);
-        const glm::dvec2 range = depth_range(position, bounds);
-        const double half = std::tan(0.5 * lamp.spot_size) * (1.0 + 4.0 / resolution) + 1e-6;
-        placed.faces.push_back(
-            {position, f.x, f.y, f.axis, half, half, range.x, range.y, true, {0, 0}});
-      } else {
-        add_cube(placed.faces, position, bounds, resolution);
-      }
-    }
-
-    // A batch is closed when it has lamps enough or this lamp's faces would not fit.
-    if (set.batches.empty() || set.batches.back().light_count == kLightsPerBatch ||
-        set.batches.back().face_count + placed.faces.size() > size_t(layers))
-      set.batches.push_back({uint32_t(i), 0, uint32_t(set.faces.size()), 0});
-    LightBatch& batch = set.batches.back();
-    ++batch.light_count;
-    batch.face_count += uint32_t(placed.faces.size());
-    if (!placed.faces.empty()) {
-      placed.light.shadow = uint32_t(set.faces.size());
-      placed.light.faces = uint32_t(placed.faces.size());
-    }
-    for (const gpu_scene::LightView& face : placed.faces) {
-      set.faces.push_back(describe(face, camera_origin, resolution));
-    }
-    set.lights.push_back(std::move(placed));
+    PlacedLight placed{describe(lamp, sample, points.empty(), placement.camera_origin),
+                       ShadowKind(lamp.type), placement.resolution, {}};
+    if (shadows && lamp.cast_shadow)
+      placed.views = shadow_views(lamp, sample, point.texel_shift, placement);
+    append(set, std::move(placed), placement);
+  }
+  for (const MeshLight& light : mesh_lights) {
+    const int resolution = std::max(placement.resolution / kMeshShare, 16);
+    PlacedLight placed{describe(light, placement.camera_origin), ShadowKind::kMesh, resolution, {}};
+    if (shadows)
+      placed.views = surrounding_views(light.position, side_of(light), bounds, resolution);
+    append(set, std::move(placed), placement);
   }
   return set;
 }

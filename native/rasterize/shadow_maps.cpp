@@ -8,8 +8,8 @@ namespace panoptes::rasterize {
 
 namespace {
 
-constexpr const char* kTimerNames[4] = {"point_shadows", "sun_shadows", "spot_shadows",
-                                        "area_shadows"};
+constexpr const char* kTimerNames[5] = {"point_shadows", "sun_shadows", "spot_shadows",
+                                        "area_shadows", "emissive_shadows"};
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
                         const ShadowSettings& settings, const shared::View& camera,
                         const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
                         gl::PassTimer& timer, ViewBlock& view_block, bool keep) {
-  const int layers = std::max(int(batch.face_count), 1);
+  const int layers = std::max(int(batch.layers), 1);
   if (!maps_ || maps_.options().layers < layers ||
       maps_.options().width != settings.resolution) {
     maps_ = gl::Texture();
@@ -33,23 +33,28 @@ void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
     sampler_ = gl::Sampler({GL_NEAREST, GL_NEAREST, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE});
     keep = false;
   }
-  if (keep || batch.face_count == 0) return;
+  if (keep || batch.layers == 0) return;
 
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glViewport(0, 0, settings.resolution, settings.resolution);
+  glEnable(GL_SCISSOR_TEST);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_TRUE);
   int layer = 0;
   for (uint32_t i = batch.first_light; i < batch.first_light + batch.light_count; ++i) {
     const PlacedLight& placed = set.lights[i];
-    if (placed.faces.empty()) continue;
-    gl::PassScope scope(timer, kTimerNames[int(placed.type)]);
-    for (const gpu_scene::LightView& face : placed.faces) {
-      shared::View view = gpu_scene::light_view(face, settings.resolution);
+    if (placed.views.empty()) continue;
+    gl::PassScope scope(timer, kTimerNames[int(placed.kind)]);
+    uint32_t face = placed.light.shadow;
+    glViewport(0, 0, placed.resolution, placed.resolution);
+    glScissor(0, 0, placed.resolution, placed.resolution);
+    for (const auto& from : placed.views) {
+      ++face;
+      if (!from) continue;
+      shared::View view = gpu_scene::light_view(*from, placed.resolution);
       view.size.z = camera.size.z;
       view.size.w = camera.size.w;
-      view.alpha = {camera.alpha.x, float(batch.first_face + uint32_t(layer) + 1), 0, 0};
+      view.alpha = {camera.alpha.x, float(face), 0, 0};
       view.filtering.x = camera.filtering.x;
       view_block.set(view);
       glNamedFramebufferTextureLayer(framebuffer_.id(), GL_DEPTH_ATTACHMENT, maps_.id(), 0,
@@ -63,6 +68,7 @@ void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
         });
     }
   }
+  glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }

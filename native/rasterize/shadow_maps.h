@@ -1,5 +1,5 @@
-// Shadow maps of all lamps, in layers of one depth array: one layer for a sun or a narrow spot, six
-// faces of a world-aligned cube for points, wide spots and areas.
+// Shadow maps of all lamps, in layers of one depth array: one layer for a sun, a narrow spot or a
+// lamp outside the scene, up to six faces of a world-aligned cube for others.
 //
 // Lamps whose layers do not fit together are worked off in batches, so that memory is bounded
 // whatever the number of lamps. Maps that hold for the next sample or frame are kept.
@@ -10,7 +10,9 @@
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/lights_shared.h"
 #include "gpu_scene/view.h"
+#include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
+#include "rasterize/shadow_views.h"
 
 #include <glm/glm.hpp>
 
@@ -23,21 +25,26 @@ struct ShadowSettings {
   int64_t max_bytes = 512 << 20;   // of the depth array
 };
 
-// A lamp in one sample: what shaders read, and the faces of its map.
+// Kinds of lamps as the statistics tell their shadows apart; the first four are scene::LightType.
+enum class ShadowKind { kPoint = 0, kSun = 1, kSpot = 2, kArea = 3, kMesh = 4 };
+
+// A lamp in one sample: what shaders read, and the views of its map.
 struct PlacedLight {
   shared::Light light;
-  scene::LightType type;
-  std::vector<gpu_scene::LightView> faces;  // none: casts no shadow
+  ShadowKind kind;
+  int resolution;     // texels a side of each view, at most the maps'
+  ShadowViews views;  // none: casts no shadow
 };
 
+// Lamps whose maps fit into the layers together. Their layers count from 0.
 struct LightBatch {
   uint32_t first_light = 0, light_count = 0;
-  uint32_t first_face = 0, face_count = 0;
+  uint32_t layers = 0;
 };
 
 struct LightSet {
   std::vector<PlacedLight> lights;
-  std::vector<shared::ShadowFace> faces;
+  std::vector<shared::ShadowFace> faces;  // of all lights, in order
   std::vector<LightBatch> batches;
 };
 
@@ -47,11 +54,20 @@ struct LightSamplePoint {
   glm::vec2 texel_shift{0};  // of the map's grid, -.5 .. .5, so that samples smooth its edges
 };
 
-// Places `lights` for one sample: `points` is empty for the lamps' centres or has an entry a lamp.
-// No GL. `layers` is how many faces fit into a batch, at least 6.
-LightSet place_lights(const std::vector<scene::Light>& lights, bool shadows,
-                      const std::vector<LightSamplePoint>& points, const scene::Bounds& bounds,
-                      const glm::dvec3& camera_origin, int resolution, int layers);
+// What all lamps of a sample are placed by.
+struct Placement {
+  bool shadows = true;
+  scene::Bounds bounds;      // of everything that casts or catches shadows
+  glm::dvec3 camera_origin{0};
+  int resolution = 2048;     // of the maps
+  int layers = 6;            // that a batch may have, at least 6
+};
+
+// Places lamps for one sample: `points` is empty for the lamps' centres or has an entry a lamp; then
+// come the mesh lights. No GL.
+LightSet place_lights(const std::vector<scene::Light>& lights,
+                      const std::vector<LightSamplePoint>& points,
+                      const std::vector<MeshLight>& mesh_lights, const Placement& placement);
 
 class ShadowMaps {
  public:

@@ -12,6 +12,9 @@ plan::Effects decide(const scene::Facts& facts) {
                      lamps == 0  ? "the scene has no lamp that shines"
                      : !surfaces ? "there is no surface to light"
                                  : fmt::format("{} lamp{}", lamps, lamps > 1 ? "s" : "")});
+  effects.push_back({"emissive_light", facts.emission && surfaces,
+                     facts.emission ? "surfaces that emit light shine on others"
+                                    : "no material emits light"});
   effects.push_back({"world_light", facts.world && surfaces,
                      !facts.world ? "the world is black"
                      : !surfaces  ? "there is no surface to light"

@@ -15,6 +15,9 @@ namespace {
 // Where a single threshold has to do: Blender's own for its depth pass.
 constexpr float kCutAlpha = 0.5f;
 
+// Dimensions of the sample sequences: the pixel's, that of glowing surfaces, then two a lamp.
+constexpr uint32_t kPixelDimension = 0, kEmitterDimension = 1, kLampDimension = 2;
+
 void stop_if(const std::atomic<bool>& cancelled) {
   if (cancelled) throw Cancelled{};
 }
@@ -87,7 +90,7 @@ gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world) {
 }
 
 void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
-                     const Settings& settings, const scene::Scene& scene,
+                     const Settings& settings, bool single, const scene::Scene& scene,
                      const gpu_scene::GpuScene& gpu) {
   camera_ = camera;
   settings_ = settings;
@@ -95,10 +98,13 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   glossy_ = runs(plan, "glossy");
   emission_ = runs(plan, "emission");
   alpha_ = runs(plan, "alpha");
-  lamps_ = runs(plan, "direct_light");
+  emissive_light_ = runs(plan, "emissive_light");
+  lamps_ = emissive_light_ || runs(plan, "direct_light");
+  single_ = single;
   soft_ = runs(plan, "soft_shadows");
   shadows_ = lamps_ && (runs(plan, "sun_shadows") || runs(plan, "point_shadows") ||
-                        runs(plan, "spot_shadows") || runs(plan, "area_shadows"));
+                        runs(plan, "spot_shadows") || runs(plan, "area_shadows") ||
+                        runs(plan, "emissive_shadows"));
   background_ = runs(plan, "world_background") && gpu.world();
   world_light_ = runs(plan, "world_light");
   depth_ = runs(plan, "pass_depth");
@@ -111,6 +117,20 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   want(glossy_light_, lamps_ && glossy_, width, height);
   want(environment_, background_, width, height);
   if (!shadows_) shadow_maps_.release();
+  if (!emissive_light_) {
+    emitters_.clear();
+    emitter_revision_ = -1;
+  } else {
+    gl::PassScope scope(timer_, "emissive_light");
+    if (emitter_revision_ != gpu.revision())
+      emitters_.update(scene, {gpu, programs_, view_block_, gpu_scene::camera_view(camera, {0, 0})});
+    emitter_revision_ = gpu.revision();
+    emitters_.start(
+        [seed = settings.seed](uint32_t index) {
+          return film::sample_point(index, seed, kEmitterDimension);
+        },
+        single);
+  }
   if (world_light_ && world_revision_ != gpu.world_revision()) {
     gl::PassScope scope(timer_, "world_light");
     project_world(scene.world(), gpu);
@@ -151,7 +171,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   // A single sample looks through the pixel's centre; many follow the pixel filter.
   const uint32_t count = last - first;
   const bool centre = count == 1 && first == 0;
-  const glm::vec2 u = film::sample_point(index, settings_.seed, 0);
+  const glm::vec2 u = film::sample_point(index, settings_.seed, kPixelDimension);
   const glm::dvec2 jitter =
       centre ? glm::dvec2(0) : glm::dvec2(film::blackman_harris_offset(u.x, settings_.filter_width),
                                           film::blackman_harris_offset(u.y, settings_.filter_width));
@@ -220,20 +240,34 @@ void Realtime::dispatch_pixels() const {
   glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
 }
 
-void Realtime::add_lamps(uint32_t index, const shared::View& view,
-                         const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled) {
+rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
+                                    const gpu_scene::GpuScene& gpu) {
   std::vector<rasterize::LightSamplePoint> points;
   if (soft_)
     for (size_t i = 0; i < lights_.size(); ++i) {
-      const glm::vec2 u = film::sample_point(index, settings_.seed, uint32_t(2 + 2 * i));
-      const glm::vec2 s = film::sample_point(index, settings_.seed, uint32_t(3 + 2 * i));
+      const uint32_t dimension = kLampDimension + 2 * uint32_t(i);
+      const glm::vec2 u = film::sample_point(index, settings_.seed, dimension);
+      const glm::vec2 s = film::sample_point(index, settings_.seed, dimension + 1);
       points.push_back({u.x, u.y, lights_[i].extended() ? s - 0.5f : glm::vec2(0)});
     }
-  const int resolution = settings_.shadows.resolution;
-  const rasterize::LightSet set = rasterize::place_lights(
-      lights_, shadows_, points, bounds_, glm::inverse(camera_.world_to_camera)[3], resolution,
-      rasterize::ShadowMaps::layer_limit(settings_.shadows, device_));
+  std::vector<rasterize::MeshLight> mesh_lights;
+  if (!emitters_.empty()) {
+    gl::PassScope scope(timer_, "emissive_light");
+    mesh_lights = emitters_.sample(index, {gpu, programs_, view_block_, view});
+    view_block_.set(view);
+  }
+  return rasterize::place_lights(
+      lights_, points, mesh_lights,
+      {.shadows = shadows_,
+       .bounds = bounds_,
+       .camera_origin = glm::inverse(camera_.world_to_camera)[3],
+       .resolution = settings_.shadows.resolution,
+       .layers = rasterize::ShadowMaps::layer_limit(settings_.shadows, device_)});
+}
 
+void Realtime::add_lamps(uint32_t index, const shared::View& view,
+                         const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled) {
+  const rasterize::LightSet set = place(index, view, gpu);
   std::vector<shared::Light> lights;
   for (const rasterize::PlacedLight& placed : set.lights) lights.push_back(placed.light);
   store(lights_buffer_, lights.data(), lights.size() * sizeof(shared::Light));
@@ -243,7 +277,8 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
 
   // Maps hold for the next sample and frame unless a lamp's point or an alpha threshold moves on,
   // or another batch has overwritten them.
-  const bool lasting = !soft_ && !alpha_ && set.batches.size() <= 1;
+  const bool lasting =
+      !soft_ && !alpha_ && set.batches.size() <= 1 && (emitters_.empty() || single_);
   const bool keep = lasting && shadow_revision_ == gpu.revision();
   shadow_revision_ = lasting ? gpu.revision() : -1;
   for (const rasterize::LightBatch& batch : set.batches) {
@@ -266,7 +301,6 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     if (glossy_) glossy_light_.bind_image(1, GL_WRITE_ONLY);
     glUniform1ui(2, batch.first_light);
     glUniform1ui(3, batch.light_count);
-    glUniform1ui(4, batch.first_face);
     g_buffer_.dispatch_surfaces();
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     stop_if(cancelled);

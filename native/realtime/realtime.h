@@ -10,6 +10,7 @@
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/view.h"
 #include "plan/effect.h"
+#include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/shadow_maps.h"
 #include "scene/scene.h"
@@ -48,9 +49,10 @@ class Realtime {
   Realtime(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
       : device_(device), programs_(programs), timer_(timer) {}
 
-  // Prepares for a frame: allocates what the plan runs and releases what it does not.
+  // Prepares for a frame: allocates what the plan runs and releases what it does not. `single` says
+  // that the frame has one sample only.
   void begin(const gpu_scene::Camera& camera, const plan::Effects& plan, const Settings& settings,
-             const scene::Scene& scene, const gpu_scene::GpuScene& gpu);
+             bool single, const scene::Scene& scene, const gpu_scene::GpuScene& gpu);
 
   // Adds sample `index` (of first .. last - 1) to the film. Throws Cancelled when `cancelled` says so.
   void render_sample(uint32_t index, uint32_t first, uint32_t last, const gpu_scene::GpuScene& gpu,
@@ -60,6 +62,8 @@ class Realtime {
   void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);
   void dispatch_pixels() const;
   void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
+  rasterize::LightSet place(uint32_t index, const shared::View& view,
+                            const gpu_scene::GpuScene& gpu);
   void add_lamps(uint32_t index, const shared::View& view,
                  const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
 
@@ -72,11 +76,14 @@ class Realtime {
   plan::Effects plan_;
   bool glossy_ = false, emission_ = false, lamps_ = false, shadows_ = false, soft_ = false;
   bool alpha_ = false, background_ = false, world_light_ = false, depth_ = false;
+  bool emissive_light_ = false, single_ = false;
   std::vector<scene::Light> lights_;
   scene::Bounds bounds_;
 
   rasterize::ViewBlock view_block_;
   rasterize::GBuffer g_buffer_;
+  rasterize::EmitterLights emitters_;
+  int64_t emitter_revision_ = -1;
   rasterize::ShadowMaps shadow_maps_;
   int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
   int shadow_resolution_ = 0;

@@ -21,7 +21,6 @@ layout(binding = 0) uniform sampler2D diffuse_before;
 layout(binding = 1) uniform sampler2D glossy_before;
 layout(location = 2) uniform uint first_light;
 layout(location = 3) uniform uint light_count;
-layout(location = 4) uniform uint batch_first_face;  // the one in layer 0 of shadow_maps
 
 #if SHADOWS
 uint cube_face(vec3 from_light) {
@@ -42,6 +41,8 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
   vec3 from_light = light.type == LIGHT_SUN ? vec3(0.0) : g.position - light.position.xyz;
   uint face = light.shadow + (light.faces == 6u ? cube_face(from_light) : 0u);
   ShadowFace f = shadow_faces[face];
+  float layer = f.half_extent.z;
+  if (layer < 0.0) return 1.0;  // nothing stands there that could cast or catch a shadow
   bool perspective = f.axis.w > 0.5;
   vec3 n = g.geometric_normal;
   float cosine = dot(n, to_light);
@@ -60,11 +61,10 @@ float shadow(Light light, GBufferPixel g, vec3 to_light) {
   vec2 ndc = vec2(dot(p, f.x.xyz), dot(p, f.y.xyz)) / spread - shift;
   if (any(greaterThan(abs(ndc), vec2(1.0)))) return 1.0;
 
-  float resolution = float(textureSize(shadow_maps, 0).x);
+  float resolution = f.half_extent.w;
   vec2 place = (ndc * 0.5 + 0.5) * resolution - 0.5;
   vec2 corner = floor(place), fraction = place - corner;
-  vec4 stored = textureGather(shadow_maps, vec3((corner + 1.0) / resolution,
-                                                float(face - batch_first_face)));
+  vec4 stored = textureGather(shadow_maps, vec3((corner + 1.0) / float(textureSize(shadow_maps, 0).x), layer));
 
   // The plane in the map's frame, per unit of the map's coordinates; depths are taken relative to
   // the receiver's, since the normal is not exact enough for the plane's distance from the lamp.
@@ -115,11 +115,16 @@ void main() {
       vec3 d = light.position.xyz - g.position;
       float squared = max(dot(d, d), 1.0e-20);
       to_light = d * inversesqrt(squared);
-      irradiance /= squared + light.position.w * light.position.w;
+      float least = light.position.w * light.position.w;
+      float cosine = -dot(to_light, light.axis.xyz);
+      if (light.type == LIGHT_MESH)
+        irradiance = (cosine > 0.0 ? irradiance : light.center.xyz) * abs(cosine) /
+                     max(squared, least);
+      else
+        irradiance /= squared + least;
       // Points with a radius are disks that face whatever they light.
       if (light.type == LIGHT_POINT)
         irradiance *= max(dot(safe_unit(light.center.xyz - g.position, to_light), to_light), 0.0);
-      float cosine = -dot(to_light, light.axis.xyz);
       if (light.type == LIGHT_SPOT) irradiance *= spot_falloff(light.cone.xy, cosine);
       if (light.type == LIGHT_AREA) irradiance *= area_falloff(light.cone.xy, cosine);
     }

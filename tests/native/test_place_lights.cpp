@@ -2,6 +2,7 @@
 #include "rasterize/shadow_maps.h"
 #include "support.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -9,7 +10,7 @@ namespace panoptes::test {
 namespace {
 
 using rasterize::LightSet;
-using rasterize::place_lights;
+using Points = std::vector<rasterize::LightSamplePoint>;
 
 scene::Bounds bounds_of(const glm::vec3& low, const glm::vec3& high) {
   scene::Bounds b;
@@ -26,6 +27,18 @@ std::vector<glm::dvec3> corners(const scene::Bounds& b) {
     all.push_back(
         {i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z});
   return all;
+}
+
+LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows, const Points& points,
+                      const scene::Bounds& bounds, const glm::dvec3& camera, int resolution,
+                      int layers, const std::vector<rasterize::MeshLight>& mesh_lights = {}) {
+  return rasterize::place_lights(lamps, points, mesh_lights,
+                                 {shadows, bounds, camera, resolution, layers});
+}
+
+size_t drawn_views(const rasterize::PlacedLight& placed) {
+  return size_t(std::count_if(placed.views.begin(), placed.views.end(),
+                              [](const auto& view) { return view.has_value(); }));
 }
 
 LightSet place(const std::vector<scene::Light>& lamps, const scene::Bounds& bounds = kRoom,
@@ -51,11 +64,16 @@ TEST(PlaceLights, FacesReadTheMapsAsTheyAreDrawn) {
   const LightSet set =
       place_lights({sun({0.2f, 0.5f, -1}, 1), spot({1, 0, 3}, {0.1f, 0.2f, -1}, 1, 1.0f, 0),
                     point({2, 1, 3}, 1)},
-                   true, std::vector<rasterize::LightSamplePoint>(3, {0.5f, 0.5f, {0.3f, -0.4f}}),
+                   true, Points(3, {0.5f, 0.5f, {0.3f, -0.4f}}),
                    kRoom, camera, 64, 12);
   size_t face = 0;
   for (const rasterize::PlacedLight& placed : set.lights)
-    for (const gpu_scene::LightView& view : placed.faces) {
+    for (const auto& drawn_view : placed.views) {
+      if (!drawn_view) {
+        EXPECT_LT(set.faces[face++].half_extent.z, 0);
+        continue;
+      }
+      const gpu_scene::LightView& view = *drawn_view;
       const shared::View drawn = gpu_scene::light_view(view, 64);
       for (const glm::dvec3& p : corners(kRoom)) {
         const glm::dvec4 clip =
@@ -84,7 +102,7 @@ TEST(PlaceLights, GivesEachKindItsFaces) {
   ASSERT_EQ(set.lights.size(), 6u);
   uint32_t first = 0;
   for (size_t i = 0; i < 6; ++i) {
-    EXPECT_EQ(set.lights[i].faces.size(), faces[i]) << "lamp " << i;
+    EXPECT_EQ(set.lights[i].views.size(), faces[i]) << "lamp " << i;
     if (faces[i]) {
       EXPECT_EQ(set.lights[i].light.shadow, first);
       EXPECT_EQ(set.lights[i].light.faces, faces[i]);
@@ -117,25 +135,21 @@ TEST(PlaceLights, SharesLampsOutAmongBatches) {
     }
     const LightSet set = place(lamps, kRoom, 64, layers);
     std::vector<int> seen(lamps.size(), 0);
-    uint32_t next_face = 0;
     for (const rasterize::LightBatch& batch : set.batches) {
-      EXPECT_LE(batch.face_count, uint32_t(layers));
-      EXPECT_EQ(batch.first_face, next_face);
+      EXPECT_LE(batch.layers, uint32_t(layers));
       EXPECT_GT(batch.light_count, 0u);
-      next_face += batch.face_count;
-      uint32_t faces = 0;
+      uint32_t next_layer = 0;
       for (uint32_t i = batch.first_light; i < batch.first_light + batch.light_count; ++i) {
         ASSERT_LT(i, lamps.size());
         ++seen[i];
-        faces += uint32_t(set.lights[i].faces.size());
-        if (set.lights[i].faces.empty()) continue;
-        EXPECT_GE(set.lights[i].light.shadow, batch.first_face);
-        EXPECT_LE(set.lights[i].light.shadow + set.lights[i].light.faces,
-                  batch.first_face + batch.face_count);
+        const shared::Light& light = set.lights[i].light;
+        if (light.shadow == shared::NO_SHADOW) continue;
+        for (uint32_t f = light.shadow; f < light.shadow + light.faces; ++f)
+          if (set.faces[f].half_extent.z >= 0)
+            EXPECT_EQ(set.faces[f].half_extent.z, float(next_layer++));
       }
-      EXPECT_EQ(faces, batch.face_count);
+      EXPECT_EQ(next_layer, batch.layers);
     }
-    EXPECT_EQ(next_face, set.faces.size());
     for (int count : seen) EXPECT_EQ(count, 1);
   }
 }
@@ -209,7 +223,12 @@ TEST(PlaceLights, CubesCoverAllDirections) {
       if (d == glm::dvec3(0)) continue;
       d = glm::normalize(d) * 2.0;
       double w = 0;
-      const glm::dvec3 ndc = ndc_of(set.faces[cube_face(d)], lamp + d, camera, &w);
+      const shared::ShadowFace& face = set.faces[cube_face(d)];
+      if (face.half_extent.z < 0) {  // then nothing of the room lies there
+        for (const glm::dvec3& corner : corners(kRoom)) EXPECT_NE(cube_face(corner - lamp), cube_face(d));
+        continue;
+      }
+      const glm::dvec3 ndc = ndc_of(face, lamp + d, camera, &w);
       EXPECT_GT(w, 0);
       EXPECT_LE(std::abs(ndc.x), 1);
       EXPECT_LE(std::abs(ndc.y), 1);
@@ -243,6 +262,54 @@ TEST(PlaceLights, SpotMapsHoldTheirCone) {
   }
 }
 
+TEST(PlaceLights, LampsOutsideSeeTheSceneThroughOneFittedView) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  for (double distance : {20.0, 5e3, 1e4, 1e7}) {
+    for (int i = 0; i < 40; ++i) {
+      const glm::dvec3 d = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+      const glm::dvec3 lamp = glm::dvec3(1, 0.5, 2) + distance * d;
+      const LightSet set = place({point(glm::vec3(lamp), 1)}, kRoom, 64, 12, {0, 0, 0});
+      ASSERT_EQ(set.faces.size(), 1u);
+      double reach = 0;
+      for (const glm::dvec3& corner : corners(kRoom)) {
+        // The lamp as the float matrix has it, since far away that is another place.
+        const glm::dvec3 ndc = ndc_of(set.faces[0], corner, {0, 0, 0});
+        reach = std::max({reach, std::abs(ndc.x), std::abs(ndc.y)});
+        ASSERT_GE(ndc.z, 0);
+        ASSERT_LE(ndc.z, 1);
+      }
+      EXPECT_LE(reach, 1);
+      EXPECT_GT(reach, 0.6);
+    }
+  }
+}
+
+TEST(PlaceLights, AreasAndGlowingSurfacesSkipWhatLiesBehindThem) {
+  // In the middle of the room, shining down: the face that looks up has nothing to show.
+  const LightSet lamp =
+      place({area({1, 0.5f, 2}, {0, 0, -1}, 1, scene::AreaShape::kSquare, 1, 1)}, kRoom, 64, 12);
+  ASSERT_EQ(lamp.lights[0].views.size(), 6u);
+  EXPECT_EQ(drawn_views(lamp.lights[0]), 5u);
+  EXPECT_FALSE(lamp.lights[0].views[4]);
+
+  rasterize::MeshLight glow{{1, 0.5, 2}, {1, 0, 0}, glm::vec3(1), glm::vec3(0), 0.1f};
+  EXPECT_FALSE(place_lights({}, true, {}, kRoom, {0, 0, 0}, 64, 12, {glow}).lights[0].views[1]);
+  std::swap(glow.front, glow.back);
+  EXPECT_FALSE(place_lights({}, true, {}, kRoom, {0, 0, 0}, 64, 12, {glow}).lights[0].views[0]);
+  glow.front = glm::vec3(1);
+  EXPECT_EQ(drawn_views(place_lights({}, true, {}, kRoom, {0, 0, 0}, 64, 12, {glow}).lights[0]), 6u);
+}
+
+TEST(PlaceLights, CubesSkipFacesThatHoldNothing) {
+  // Just below a wide flat scene, so near that no fitted view will do.
+  const scene::Bounds plate = bounds_of({-10, -10, 1}, {10, 10, 1.1f});
+  const LightSet set = place({point({0, 0, 0.5f}, 1)}, plate, 64, 12);
+  ASSERT_EQ(set.lights[0].views.size(), 6u);
+  EXPECT_FALSE(set.lights[0].views[5]);
+  EXPECT_TRUE(set.lights[0].views[4]);
+}
+
 TEST(PlaceLights, KeepsLampsRelativeToTheCamera) {
   const glm::dvec3 far(1048576.0, 0, 0);
   const scene::Bounds bounds = bounds_of({1048575, -1, 0}, {1048577, 1, 2});
@@ -258,7 +325,7 @@ TEST(PlaceLights, UsesThePointsOfTheSample) {
       place_lights({lamp}, true, {{0.25f, 0.5f, glm::vec2(0)}}, kRoom, {0, 0, 0}, 64, 12);
   const glm::vec3 expected = scene::sample_light(lamp, 0.25f, 0.5f, {}).position;
   EXPECT_LT(glm::length(glm::vec3(set.lights[0].light.position) - expected), 1e-6f);
-  EXPECT_LT(glm::length(glm::vec3(set.lights[0].faces[0].origin) - expected), 1e-6f);
+  EXPECT_LT(glm::length(glm::vec3(set.lights[0].views[0]->origin) - expected), 1e-6f);
 }
 
 }  // namespace

@@ -35,7 +35,9 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
       {"bare geometry", [](auto&, auto&) {}, {}},
       {"alpha", [](auto& f, auto&) { f.alpha = true; }, {"alpha"}},
       {"normal map", [](auto& f, auto&) { f.normal_map = true; }, {"normal_maps"}},
-      {"emission", [](auto& f, auto&) { f.emission = true; }, {"emission"}},
+      {"emission",
+       [](auto& f, auto&) { f.emission = true; },
+       {"emission", "emissive_light", "emissive_shadows"}},
       {"glossy", [](auto& f, auto&) { f.glossy = true; }, {"glossy"}},
       {"a point lamp without shadow", [](auto& f, auto&) { f.lamps[0] = 1; }, {"direct_light"}},
       {"a point lamp",
@@ -119,7 +121,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 10u + 3u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 11u + 4u + size_t(film::kPassCount));
   }
 }
 

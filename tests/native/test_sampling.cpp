@@ -137,5 +137,34 @@ TEST(SamplePoints, DependOnTheIndexAlone) {
   }
 }
 
+TEST(SamplePoints, EveryElementaryIntervalHoldsOnePoint) {
+  // What makes it a (0,2)-sequence: each aligned block of 2^m indices has exactly one point in every
+  // 2^-a by 2^(a-m) box, whatever the shape.
+  constexpr int m = 6;
+  for (uint32_t seed : {0u, 7u})
+    for (uint32_t dimension : {0u, 3u})
+      for (uint32_t first : {0u, 1u << m, 77u << m})
+        for (int a = 0; a <= m; ++a) {
+          std::set<std::pair<int, int>> boxes;
+          for (uint32_t i = first; i < first + (1u << m); ++i) {
+            const glm::vec2 p = sample_point(i, seed, dimension);
+            ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
+            boxes.insert({int(p.x * float(1 << a)), int(p.y * float(1 << (m - a)))});
+          }
+          EXPECT_EQ(boxes.size(), size_t(1) << m) << "boxes 2^-" << a;
+        }
+}
+
+TEST(SamplePoints, SequencesAreIndependent) {
+  // Correlation of the same index in two sequences: 1 / sqrt(n) would be chance.
+  const int n = 4096;
+  for (uint32_t other : {1u, 2u, 9u}) {
+    double sum = 0;
+    for (uint32_t i = 0; i < n; ++i)
+      sum += (sample_point(i, 5, 0).x - 0.5) * (sample_point(i, 5, other).x - 0.5);
+    EXPECT_LT(std::abs(sum / n * 12), 4 / std::sqrt(double(n)));
+  }
+}
+
 }  // namespace
 }  // namespace panoptes::test
