@@ -74,7 +74,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     std::lock_guard lock(mutex);
     gpu_scene_.update(scene);
     plan = plan::make_plan(scene.facts(), {int(wanted), request.soft_shadows,
-                                           request.force_all_effects, request.passes});
+                                           request.filter_penumbrae, request.force_all_effects,
+                                           request.passes});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes, wanted > 1);

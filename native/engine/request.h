@@ -23,6 +23,7 @@ struct RenderRequest {
   bool live = false;            // Combined can be read while the frame renders
   int shadow_resolution = 2048; // texels a side, 16 .. 8192
   bool soft_shadows = true;
+  bool filter_penumbrae = false;  // by blocker distance, instead of a point of each lamp a sample
   bool transparent_film = false;  // Combined's alpha is 0 where the world is seen
   double time_budget = 0;       // s; 0: none. At least one sample is rendered.
   double noise_threshold = 0;   // relative; 0: none

@@ -12,7 +12,8 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     all.insert(all.end(), std::make_move_iterator(part.begin()),
                std::make_move_iterator(part.end()));
   };
-  append(rasterize::decide(facts, {settings.samples, settings.soft_shadows}));
+  append(rasterize::decide(facts, {settings.samples, settings.soft_shadows,
+                                    settings.filter_penumbrae}));
   append(realtime::decide(facts));
   append(film::decide(settings.passes));
   if (settings.force_all_effects)

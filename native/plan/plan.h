@@ -10,6 +10,7 @@ namespace panoptes::plan {
 struct PlanSettings {
   int samples = 1;
   bool soft_shadows = true;
+  bool filter_penumbrae = false;   // by blocker distance, instead of a point of each lamp a sample
   bool force_all_effects = false;  // runs what the scene cannot show too; the picture stays the same
   film::PassSet passes;
 };

@@ -127,13 +127,15 @@ engine::RenderRequest request(const py::dict& dict) {
   r.live = get(dict, "live", false);
   const py::dict settings = get(dict, "settings", py::dict());
   // Part of the add-on's stable settings; direct light has no bounces to count.
-  static const std::set<std::string> known{"shadow_resolution", "soft_shadows", "time_budget",
+  static const std::set<std::string> known{"shadow_resolution", "soft_shadows",
+                                           "filter_penumbrae", "time_budget",
                                            "noise_threshold", "bounces", "film_transparent"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
   r.shadow_resolution = get(settings, "shadow_resolution", r.shadow_resolution);
   r.soft_shadows = get(settings, "soft_shadows", r.soft_shadows);
+  r.filter_penumbrae = get(settings, "filter_penumbrae", r.filter_penumbrae);
   r.transparent_film = get(settings, "film_transparent", false);
   r.time_budget = get(settings, "time_budget", 0.0);
   r.noise_threshold = get(settings, "noise_threshold", 0.0);

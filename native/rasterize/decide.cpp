@@ -38,13 +38,26 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
   }
   effects.push_back(when("emissive_shadows", facts.emission, "light of surfaces casts shadows",
                          "no material emits light"));
-  const bool soft = facts.extended_lamps && settings.soft_shadows && settings.samples > 1;
+  effects.push_back(when("sun_cascades", facts.shadow_lamps[1] > 0,
+                         "suns' maps follow what the camera sees where the scene is large",
+                         "no sun lamp casts shadows"));
+  // Each of the two ways to penumbrae leaves the other nothing to do.
+  const bool filter = settings.filter_penumbrae || settings.samples == 1;
+  const bool soft = facts.extended_lamps && settings.soft_shadows && !filter;
   effects.push_back({"soft_shadows", soft,
-                     soft                       ? "some lamp has an extent; each sample uses a point of it"
-                     : !facts.extended_lamps    ? "no lamp has an extent"
-                     : !settings.soft_shadows   ? "switched off in the settings"
-                                                : "a single sample shows the lamps' centres",
-                     !settings.soft_shadows || settings.samples == 1});
+                     soft                     ? "some lamp has an extent; each sample uses a point of it"
+                     : !facts.extended_lamps  ? "no lamp has an extent"
+                     : !settings.soft_shadows ? "switched off in the settings"
+                                              : "penumbrae are filtered instead",
+                     !settings.soft_shadows || filter});
+  const bool extended = facts.extended_lamps || facts.emission;
+  const bool filtered = extended && settings.soft_shadows && filter;
+  effects.push_back({"filtered_penumbrae", filtered,
+                     filtered                 ? "shadows widen with the distance of what casts them"
+                     : !extended              ? "no lamp has an extent"
+                     : !settings.soft_shadows ? "switched off in the settings"
+                                              : "each sample uses a point of the lamps instead",
+                     !settings.soft_shadows || !filter});
   return effects;
 }
 

@@ -8,6 +8,7 @@ namespace panoptes::rasterize {
 struct DecideSettings {
   int samples = 1;
   bool soft_shadows = true;
+  bool filter_penumbrae = false;  // by blocker distance, instead of a point of the lamp a sample
 };
 
 // What the camera's G-buffer and the shadow maps do for a scene with these facts.

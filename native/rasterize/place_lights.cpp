@@ -17,6 +17,23 @@ constexpr int kMeshShare = 4;
 // llvmpipe cuts an invocation off after 65 535 loop iterations; each lamp takes up to five.
 constexpr uint32_t kLightsPerBatch = 4096;
 
+// The radius of a lamp that its penumbrae follow, metres; of suns the tangent of half their angle.
+float penumbra_size(const scene::Light& lamp) {
+  switch (lamp.type) {
+    case scene::LightType::kSun: return std::tan(0.5f * std::min(lamp.angle, 3.0f));
+    case scene::LightType::kArea: {
+      // Of the disk with the same area.
+      const bool same = lamp.shape == scene::AreaShape::kSquare || lamp.shape == scene::AreaShape::kDisk;
+      const bool round = lamp.shape == scene::AreaShape::kDisk || lamp.shape == scene::AreaShape::kEllipse;
+      const float x = lamp.size_x * glm::length(glm::vec3(lamp.object_to_world[0]));
+      const float y = (same ? lamp.size_x : lamp.size_y) *
+                      glm::length(glm::vec3(lamp.object_to_world[1]));
+      return std::sqrt(x * y * (round ? 0.25f : 0.318310f));
+    }
+    default: return lamp.radius;
+  }
+}
+
 shared::Light describe(const scene::Light& lamp, const scene::LightSample& sample, bool centre,
                        const glm::dvec3& camera_origin) {
   shared::Light light{};
@@ -43,6 +60,7 @@ shared::Light describe(const scene::Light& lamp, const scene::LightSample& sampl
     light.cone = {spread ? std::tan(half) : -1.0f,
                   spread ? 1.0f / std::max(std::tan(half) - half, 1e-12f) : 1.0f, 0, 0};
   }
+  light.cone.z = penumbra_size(lamp);
   return light;
 }
 
@@ -55,6 +73,8 @@ shared::Light describe(const MeshLight& light, const glm::dvec3& camera_origin) 
   l.type = shared::LIGHT_MESH;
   l.shadow = shared::NO_SHADOW;
   l.faces = 1;
+  // One of several points: each fills its part of the emitter.
+  l.cone.z = light.reach;
   return l;
 }
 
@@ -85,9 +105,15 @@ ShadowViews shadow_views(const scene::Light& lamp, const scene::LightSample& sam
   const glm::dvec3 position(sample.position), direction(sample.direction);
   const int resolution = placement.resolution;
   switch (lamp.type) {
-    case scene::LightType::kSun:
-      return {sun_view(direction, placement.bounds, placement.bounds, glm::dvec2(texel_shift),
-                       resolution)};
+    case scene::LightType::kSun: {
+      std::vector<scene::Bounds> regions = placement.sun_cascades;
+      if (regions.empty()) regions.push_back(placement.bounds);
+      ShadowViews views;
+      for (const scene::Bounds& region : regions)
+        views.push_back(sun_view(direction, region, placement.bounds, glm::dvec2(texel_shift),
+                                 resolution));
+      return views;
+    }
     case scene::LightType::kSpot:
       if (lamp.spot_size <= kWidestFlatSpot)
         return {cone_view(position, direction, 0.5 * lamp.spot_size, placement.bounds, resolution)};
@@ -117,6 +143,12 @@ void append(LightSet& set, PlacedLight placed, const Placement& placement) {
   if (!placed.views.empty()) {
     placed.light.shadow = uint32_t(set.faces.size());
     placed.light.faces = uint32_t(placed.views.size());
+    // Seen as parallel light from far away, the lamp's radius counts as an angle.
+    const auto& view = placed.views.front();
+    if (view && !view->perspective && placed.kind != ShadowKind::kSun)
+      placed.light.cone.z /=
+          float(glm::length(view->origin - placement.camera_origin -
+                            glm::dvec3(placed.light.position)));
   }
   for (const auto& view : placed.views) {
     shared::ShadowFace face{};

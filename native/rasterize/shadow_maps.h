@@ -58,6 +58,7 @@ struct LightSamplePoint {
 struct Placement {
   bool shadows = true;
   scene::Bounds bounds;      // of everything that casts or catches shadows
+  std::vector<scene::Bounds> sun_cascades;  // that suns' maps show, finest first; empty: all
   glm::dvec3 camera_origin{0};
   int resolution = 2048;     // of the maps
   int layers = 6;            // that a batch may have, at least 6

@@ -48,7 +48,8 @@ gl::ProgramSource direct_light_program(const LightOptions& options) {
   source.name = "direct light";
   source.stages = {{GL_COMPUTE_SHADER, "realtime/direct_light.comp"}};
   source.defines = {fmt::format("SHADOWS {}", int(options.shadows)),
-                    fmt::format("GLOSSY {}", int(options.glossy))};
+                    fmt::format("GLOSSY {}", int(options.glossy)),
+                    fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae))};
   return source;
 }
 
@@ -102,9 +103,11 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   lamps_ = emissive_light_ || runs(plan, "direct_light");
   single_ = single;
   soft_ = runs(plan, "soft_shadows");
+  filtered_ = runs(plan, "filtered_penumbrae");
   shadows_ = lamps_ && (runs(plan, "sun_shadows") || runs(plan, "point_shadows") ||
                         runs(plan, "spot_shadows") || runs(plan, "area_shadows") ||
                         runs(plan, "emissive_shadows"));
+  cascades_ = shadows_ && runs(plan, "sun_cascades");
   background_ = runs(plan, "world_background") && gpu.world();
   world_light_ = runs(plan, "world_light");
   depth_ = runs(plan, "pass_depth");
@@ -196,6 +199,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   stop_if(cancelled);
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
+  if (cascades_ && index == first) find_cascades(view);
   if (lamps_) add_lamps(index, view, gpu, cancelled);
 
   if (background_) {
@@ -240,6 +244,16 @@ void Realtime::dispatch_pixels() const {
   glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
 }
 
+void Realtime::find_cascades(const shared::View& view) {
+  gl::PassScope scope(timer_, "sun_cascades");
+  const glm::dvec3 origin = glm::inverse(camera_.world_to_camera)[3];
+  std::vector<scene::Bounds> cascades = rasterize::choose_cascades(
+      rasterize::visible_slabs(g_buffer_, bounds_, origin, programs_), bounds_, view.filtering.y,
+      camera_.perspective(), settings_.shadows.resolution);
+  if (cascades != sun_cascades_) shadow_revision_ = -1;
+  sun_cascades_ = std::move(cascades);
+}
+
 rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
                                     const gpu_scene::GpuScene& gpu) {
   std::vector<rasterize::LightSamplePoint> points;
@@ -260,6 +274,7 @@ rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
       lights_, points, mesh_lights,
       {.shadows = shadows_,
        .bounds = bounds_,
+       .sun_cascades = cascades_ ? sun_cascades_ : std::vector<scene::Bounds>{},
        .camera_origin = glm::inverse(camera_.world_to_camera)[3],
        .resolution = settings_.shadows.resolution,
        .layers = rasterize::ShadowMaps::layer_limit(settings_.shadows, device_)});
@@ -289,7 +304,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
       view_block_.set(view);
     }
     gl::PassScope scope(timer_, "direct_light");
-    programs_.get(direct_light_program({shadows_, glossy_})).use();
+    programs_.get(direct_light_program({shadows_, glossy_, filtered_})).use();
     g_buffer_.bind_bins();
     g_buffer_.bind_surfaces();
     if (shadows_) shadow_maps_.bind(13);

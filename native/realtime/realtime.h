@@ -13,6 +13,7 @@
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/shadow_maps.h"
+#include "rasterize/sun_cascades.h"
 #include "scene/scene.h"
 
 #include <atomic>
@@ -29,7 +30,7 @@ struct Settings {
 
 // Programs of this integrator, for the frame and for the shader validation.
 struct LightOptions {
-  bool shadows = false, glossy = false;
+  bool shadows = false, glossy = false, filtered_penumbrae = false;
 };
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
@@ -62,6 +63,7 @@ class Realtime {
   void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);
   void dispatch_pixels() const;
   void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
+  void find_cascades(const shared::View& view);
   rasterize::LightSet place(uint32_t index, const shared::View& view,
                             const gpu_scene::GpuScene& gpu);
   void add_lamps(uint32_t index, const shared::View& view,
@@ -76,7 +78,7 @@ class Realtime {
   plan::Effects plan_;
   bool glossy_ = false, emission_ = false, lamps_ = false, shadows_ = false, soft_ = false;
   bool alpha_ = false, background_ = false, world_light_ = false, depth_ = false;
-  bool emissive_light_ = false, single_ = false;
+  bool emissive_light_ = false, single_ = false, filtered_ = false, cascades_ = false;
   std::vector<scene::Light> lights_;
   scene::Bounds bounds_;
 
@@ -85,6 +87,7 @@ class Realtime {
   rasterize::EmitterLights emitters_;
   int64_t emitter_revision_ = -1;
   rasterize::ShadowMaps shadow_maps_;
+  std::vector<scene::Bounds> sun_cascades_;
   int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
   int shadow_resolution_ = 0;
   gl::Texture diffuse_light_, glossy_light_, environment_;

@@ -27,6 +27,7 @@ struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()};
   glm::vec3 high{-std::numeric_limits<float>::max()};
   bool empty() const { return low.x > high.x; }
+  bool operator==(const Bounds&) const = default;
   void add(const glm::vec3& p) {
     low = glm::min(low, p);
     high = glm::max(high, p);

@@ -13,6 +13,7 @@ const uint LIGHT_SPOT = 2u;
 const uint LIGHT_AREA = 3u;
 const uint LIGHT_MESH = 4u;  // a point of a glowing surface
 const uint NO_SHADOW = 0xffffffffu;
+const uint CUBE_FACES = 6u;
 
 struct Light {
   vec4 position;   // xyz: the point of it that this sample uses, relative to the camera, metres
@@ -23,9 +24,10 @@ struct Light {
   vec4 power;      // xyz: irradiance at normal incidence (suns, W/m2), else radiant intensity (W/sr)
   vec4 cone;       // spots: x cosine of the half angle, y 1 / width of the blend in cosines
                    // areas: x tan(spread / 2), y normalisation, x < 0 for no spread
+                   // z: radius that penumbrae are filtered by, metres; suns: tan(angle / 2)
   uint type;
   uint shadow;     // first face in `shadow_faces`, or NO_SHADOW
-  uint faces;      // 1, or 6 of a cube in the order +x -x +y -y +z -z
+  uint faces;      // 1; CUBE_FACES in the order +x -x +y -y +z -z; suns: cascades, finest first
   uint padding;
 };
 SHARED_ASSERT_SIZE(Light, 96)

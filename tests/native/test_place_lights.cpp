@@ -33,7 +33,7 @@ LightSet place_lights(const std::vector<scene::Light>& lamps, bool shadows, cons
                       const scene::Bounds& bounds, const glm::dvec3& camera, int resolution,
                       int layers, const std::vector<rasterize::MeshLight>& mesh_lights = {}) {
   return rasterize::place_lights(lamps, points, mesh_lights,
-                                 {shadows, bounds, camera, resolution, layers});
+                                 {shadows, bounds, {}, camera, resolution, layers});
 }
 
 size_t drawn_views(const rasterize::PlacedLight& placed) {

@@ -37,7 +37,7 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
       {"normal map", [](auto& f, auto&) { f.normal_map = true; }, {"normal_maps"}},
       {"emission",
        [](auto& f, auto&) { f.emission = true; },
-       {"emission", "emissive_light", "emissive_shadows"}},
+       {"emission", "emissive_light", "emissive_shadows", "filtered_penumbrae"}},
       {"glossy", [](auto& f, auto&) { f.glossy = true; }, {"glossy"}},
       {"a point lamp without shadow", [](auto& f, auto&) { f.lamps[0] = 1; }, {"direct_light"}},
       {"a point lamp",
@@ -45,7 +45,7 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
        {"direct_light", "point_shadows"}},
       {"a sun",
        [](auto& f, auto&) { f.lamps[1] = f.shadow_lamps[1] = 1; },
-       {"direct_light", "sun_shadows"}},
+       {"direct_light", "sun_shadows", "sun_cascades"}},
       {"spots",
        [](auto& f, auto&) { f.lamps[2] = f.shadow_lamps[2] = 5; },
        {"direct_light", "spot_shadows"}},
@@ -60,14 +60,21 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
          f.lamps[1] = f.shadow_lamps[1] = 1;
          f.extended_lamps = true;
        },
-       {"direct_light", "sun_shadows"}},
+       {"direct_light", "sun_shadows", "sun_cascades", "filtered_penumbrae"}},
+      {"a soft sun whose penumbrae are filtered",
+       [](auto& f, auto& s) {
+         f.lamps[1] = f.shadow_lamps[1] = 1;
+         f.extended_lamps = s.filter_penumbrae = true;
+         s.samples = 16;
+       },
+       {"direct_light", "sun_shadows", "sun_cascades", "filtered_penumbrae"}},
       {"a soft sun in many samples",
        [](auto& f, auto& s) {
          f.lamps[1] = f.shadow_lamps[1] = 1;
          f.extended_lamps = true;
          s.samples = 16;
        },
-       {"direct_light", "sun_shadows", "soft_shadows"}},
+       {"direct_light", "sun_shadows", "sun_cascades", "soft_shadows"}},
       {"softness switched off",
        [](auto& f, auto& s) {
          f.lamps[1] = f.shadow_lamps[1] = 1;
@@ -75,7 +82,7 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
          s.samples = 16;
          s.soft_shadows = false;
        },
-       {"direct_light", "sun_shadows"}},
+       {"direct_light", "sun_shadows", "sun_cascades"}},
       {"a world", [](auto& f, auto&) { f.world = true; }, {"world_light", "world_background"}},
       {"passes with a divisor",
        [](auto&, auto& s) {
@@ -121,7 +128,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 11u + 4u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 13u + 4u + size_t(film::kPassCount));
   }
 }
 
@@ -133,8 +140,9 @@ TEST(FramePlan, ForcingRunsEverythingAndKeepsTheReason) {
                       forced = plan::make_plan(furnished(), force);
   ASSERT_EQ(plain.size(), forced.size());
   for (size_t i = 0; i < plain.size(); ++i) {
-    EXPECT_TRUE(forced[i].runs) << forced[i].name;
-    if (plain[i].runs) {
+    // Filtering is the other of two ways to penumbrae: forcing it would change the picture.
+    EXPECT_EQ(forced[i].runs, !plain[i].by_choice || plain[i].runs) << forced[i].name;
+    if (plain[i].runs || plain[i].by_choice) {
       EXPECT_EQ(forced[i].reason, plain[i].reason);
     } else {
       EXPECT_NE(forced[i].reason.find(plain[i].reason), std::string::npos) << forced[i].reason;
@@ -144,8 +152,7 @@ TEST(FramePlan, ForcingRunsEverythingAndKeepsTheReason) {
 }
 
 TEST(FramePlan, ForcingLeavesTheArtistsChoicesAlone) {
-  // One sample shows the lamps' centres, and soft shadows can be switched off: both change the
-  // picture.
+  // One sample filters its penumbrae, and soft shadows can be switched off: both change the picture.
   for (const plan::PlanSettings& settings :
        {plan::PlanSettings{.samples = 1, .force_all_effects = true, .passes = {}},
         plan::PlanSettings{.samples = 4,

@@ -4,7 +4,9 @@
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
+#include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
+#include "rasterize/sun_cascades.h"
 #include "realtime/realtime.h"
 #include "support.h"
 
@@ -95,11 +97,15 @@ class Shaders : public ::testing::Test {
         for (bool glossy : {false, true})
           for (bool emission : {false, true})
             add(rasterize::surface_program(m, {.glossy = glossy, .emission = emission}));
+        add(rasterize::emitter_program(m));
       }
     for (const char* name : {"bin_count", "bin_offsets", "bin_scatter"})
       add(rasterize::bin_program(name));
     for (bool shadows : {false, true})
-      for (bool glossy : {false, true}) add(realtime::direct_light_program({shadows, glossy}));
+      for (bool glossy : {false, true})
+        for (bool filtered : {false, true})
+          add(realtime::direct_light_program({shadows, glossy, filtered}));
+    add(rasterize::visible_bounds_program());
 
     // Passes only add stores; each alone, none and all stand for the rest.
     film::Film film;

@@ -25,6 +25,7 @@ void expect_shadow(TestScene s, const gpu_scene::Camera& camera, const glm::dvec
                    double margin, int resolution = 512) {
   engine::RenderRequest r = request(camera, {Pass::kDiffDir, Pass::kDepth});
   r.shadow_resolution = resolution;
+  r.soft_shadows = false;
   const Picture shaded = render(s, r);
   for (scene::Light& lamp : s.lights) lamp.cast_shadow = false;
   const Picture open = render(s, r);
@@ -116,7 +117,7 @@ TEST(Shadows, OfASpotFollowItsConeToo) {
         0.03);
 }
 
-TEST(Shadows, OfAnAreaInOneSampleAreThoseOfItsCentre) {
+TEST(Shadows, OfAHardAreaAreThoseOfItsCentre) {
   const glm::dvec3 lamp(0.3, 0.2, 3);
   expect_shadow(
       blocked_floor(area(glm::vec3(lamp), {0, 0, -1}, 20, scene::AreaShape::kSquare, 1, 1)),
@@ -237,6 +238,35 @@ TEST(Shadows, MoveWithTheLampAndTheBlocker) {
   engine.edit([&](scene::Scene& scene) { scene.set_lights({sun({1.6f, 0, -1}, float(kPi))}); });
   const Picture tilted = render(request(camera, {Pass::kDiffDir}));
   EXPECT_NEAR(at(tilted, 26), 1 / std::sqrt(1 + 1.6 * 1.6), 1e-5);
+}
+
+TEST(Shadows, LampsFarOutsideCastThem) {
+  // The same shadow from near and from very far, where parallel light is the limit.
+  for (double distance : {100.0, 1e4, 1e6}) {
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.5, 0.3, -1));
+    const glm::dvec3 lamp = -distance * direction;
+    expect_shadow(
+        blocked_floor(point(glm::vec3(lamp), float(1e3 * distance * distance))), kOblique,
+        {0, 0, 0}, {0, 0, 1},
+        [&](const glm::dvec3& p) {
+          const glm::dvec3 d = lamp - p;
+          return square_distance(glm::dvec2(p + d / d.z), 0.5);
+        },
+        0.06);
+  }
+}
+
+TEST(Shadows, OfASunStaySharpInALargeScene) {
+  // The blocked floor, with a hill 20 km away: one map over all of it would have texels of 10 m.
+  const glm::dvec3 direction(0.5, 0.3, -1);
+  TestScene s = blocked_floor(sun(glm::vec3(direction), 2));
+  s.add_object(box({20000, 0, 0}, {100, 100, 100}), {1});
+  expect_shadow(
+      s, kOblique, {0, 0, 0}, {0, 0, 1},
+      [&](const glm::dvec3& p) {
+        return square_distance(glm::dvec2(p - direction), 0.5);
+      },
+      0.06);
 }
 
 }  // namespace
