@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace panoptes::scene {
 
@@ -17,18 +18,51 @@ double similarity_scale(const glm::dmat3& m) {
   return std::sqrt(squared);
 }
 
+// The bits of x, 10 of them, with two zeros between each.
+uint32_t spread_bits(uint32_t x) {
+  x = (x | x << 16) & 0x030000ffu;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
+}
+
+// The place of `p` on a curve through `bounds` (Morton 1966), in 1024 steps an axis.
+uint32_t morton_code(const glm::vec3& p, const Bounds& bounds) {
+  uint32_t code = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float extent = bounds.high[axis] - bounds.low[axis];
+    const float place = extent > 0 ? (p[axis] - bounds.low[axis]) / extent : 0.0f;
+    code |= spread_bits(uint32_t(std::clamp(place, 0.0f, 1.0f) * 1023.0f)) << axis;
+  }
+  return code;
+}
+
 }  // namespace
 
 EmitterShape::EmitterShape(const Mesh& mesh, const MaterialRange& range,
-                           const glm::dmat3& linear)
-    : first(range.first) {
+                           const glm::dmat3& linear) {
+  Bounds bounds;
   triangles.reserve(range.count);
-  cumulative.reserve(range.count);
-  double sum = 0;
   for (uint32_t t = range.first; t < range.first + range.count; ++t) {
     const glm::uvec3& v = mesh.triangles[t];
-    triangles.push_back({mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]});
-    const auto& [a, b, c] = triangles.back();
+    triangles.push_back({t, {mesh.positions[v.x], mesh.positions[v.y], mesh.positions[v.z]}});
+    for (const glm::vec3& p : triangles.back().positions) bounds.add(p);
+  }
+  std::vector<std::pair<uint32_t, uint32_t>> order;  // code, place in `triangles`
+  for (const Triangle& t : triangles) {
+    const glm::vec3 center = (t.positions[0] + t.positions[1] + t.positions[2]) / 3.0f;
+    order.emplace_back(morton_code(center, bounds), uint32_t(order.size()));
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Triangle> sorted;
+  sorted.reserve(triangles.size());
+  for (const auto& [code, place] : order) sorted.push_back(triangles[place]);
+  triangles = std::move(sorted);
+
+  double sum = 0;
+  cumulative.reserve(range.count);
+  for (const Triangle& triangle : triangles) {
+    const auto& [a, b, c] = triangle.positions;
     const double twice = glm::length(glm::cross(linear * (glm::dvec3(b) - glm::dvec3(a)),
                                                 linear * (glm::dvec3(c) - glm::dvec3(a))));
     if (std::isfinite(twice)) sum += 0.5 * twice;
@@ -48,10 +82,10 @@ EmitterPoint Emitter::sample(float u, float v) const {
 
   EmitterPoint point;
   point.instance = instance_;
-  point.triangle = shape_->first + uint32_t(t);
+  point.triangle = shape_->triangles[t].index;
   const double root = std::sqrt(rest);
   point.barycentrics = {float(root * (1.0 - double(v))), float(root * double(v))};
-  const auto& [a, b, c] = shape_->triangles[t];
+  const auto& [a, b, c] = shape_->triangles[t].positions;
   const glm::dmat4 place(object_to_world_);
   const glm::dvec3 e1 = glm::dmat3(place) * (glm::dvec3(b) - glm::dvec3(a));
   const glm::dvec3 e2 = glm::dmat3(place) * (glm::dvec3(c) - glm::dvec3(a));
@@ -90,6 +124,14 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
         found.emplace_back(shape, instance.object_to_world, area, uint32_t(i), id);
     }
   }
+  // Blender's order of instances may differ from run to run; the sample sequence must not.
+  std::stable_sort(found.begin(), found.end(), [](const Emitter& a, const Emitter& b) {
+    const auto key = [](const Emitter& e) {
+      const glm::dvec3 p = e.sample(0.5f, 0.5f).position;
+      return std::make_tuple(p.x, p.y, p.z, e.area());
+    };
+    return key(a) < key(b);
+  });
   return found;
 }
 

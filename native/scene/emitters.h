@@ -19,12 +19,16 @@ struct EmitterPoint {
   glm::vec2 barycentrics; // of the triangle's second and third vertex
 };
 
-// Triangles of one material range and their cumulative areas. Instances that are placed by
-// similarities share one, since only the ratios of areas count.
+// Triangles of one material range and their cumulative areas, ordered along a curve that fills space:
+// strata of the sum are patches of the surface, whatever the order of a mesh's faces. Instances that
+// are placed by similarities share one, since only the ratios of areas count.
 struct EmitterShape {
-  uint32_t first;                                   // triangle of the mesh
-  std::vector<std::array<glm::vec3, 3>> triangles;  // object space
-  std::vector<double> cumulative;                   // areas under the transform that it was made for
+  struct Triangle {
+    uint32_t index;                      // in the mesh
+    std::array<glm::vec3, 3> positions;  // object space
+  };
+  std::vector<Triangle> triangles;
+  std::vector<double> cumulative;  // areas under the transform that it was made for
 
   EmitterShape(const Mesh& mesh, const MaterialRange& range, const glm::dmat3& linear);
   double area() const { return cumulative.empty() ? 0.0 : cumulative.back(); }
@@ -40,9 +44,7 @@ class Emitter {
 
   Id material() const { return material_; }
   double area() const { return area_; }  // m2, world space
-  // The point that (u, v) in [0,1)^2 stands for; u runs through the triangles in the mesh's order,
-  // which artists' tools keep coherent: strata of u are patches of the surface. Only where area() is
-  // positive.
+  // The point that (u, v) in [0,1)^2 stands for. Only where area() is positive.
   EmitterPoint sample(float u, float v) const;
 
  private:

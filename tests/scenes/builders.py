@@ -155,6 +155,21 @@ def soft_lamps():
             made.data.shadow_soft_size = 0.25
 
 
+def glow():
+    """Nothing but glowing surfaces: a plate of two colours, a warm bulb, a cold tilted box."""
+    stage()
+    split = np.ones((8, 16, 4), np.float32)
+    split[:, :8, :3], split[:, 8:, :3] = (1.0, 0.2, 0.1), (0.1, 0.4, 1.0)
+    plate, node = principled("plate", (0, 0, 0), Emission_Strength=6.0)
+    plate.node_tree.links.new(image_node(plate, image("split", split)).outputs["Color"],
+                              node.inputs.get("Emission") or node.inputs["Emission Color"])
+    rectangle("plate", plate, (2.0, 1.0), location=(0.5, 1.0, 3.2), rotation=(math.pi - 0.3, 0, 0))
+    bulb = principled("bulb", (0, 0, 0), Emission=(1.0, 0.7, 0.4, 1.0), Emission_Strength=60.0)[0]
+    sphere("bulb", bulb, 0.15, segments=24, location=(-2.6, -1.2, 1.4))
+    box = principled("box", (0, 0, 0), Emission=(0.5, 0.7, 1.0, 1.0), Emission_Strength=8.0)[0]
+    cube("tube", box, 0.4, location=(2.8, 0.6, 1.6), rotation=(0.3, 0.2, 0.5))
+
+
 def alpha_card():
     """A card with round holes cut by a texture's alpha, and one of plain alpha .5, both casting shadows."""
     rectangle("floor", principled("floor", (0.7, 0.7, 0.7))[0], (12, 12))
@@ -290,7 +305,7 @@ def image_node(material, picture):
     return node
 
 
-NAMES = ("sun", "point", "spot", "area", "four_lamps", "soft_lamps", "alpha_card", "normal_map", "instances", "transforms",
+NAMES = ("sun", "point", "spot", "area", "four_lamps", "soft_lamps", "glow", "alpha_card", "normal_map", "instances", "transforms",
          "nan_vertices", "missing_texture", "no_camera", "empty", "orthographic")
 
 
