@@ -3,6 +3,7 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace panoptes::gpu_scene {
@@ -293,6 +294,7 @@ void GpuScene::update_instances(const scene::Scene& scene, const scene::Changes&
     for (int r = 0; r < 3; ++r) out[r] = rows[r];
     out[3] = glm::vec4(0);
     std::memcpy(&out[3].x, &record, sizeof record);
+    std::memcpy(&out[3].y, &instance.visibility, sizeof instance.visibility);
   };
   const int64_t bytes = int64_t(scene.instances().size()) * 64;
   const bool all = changes.instances || !changes.meshes.empty() || !changes.materials.empty();
@@ -315,45 +317,47 @@ void GpuScene::update_instances(const scene::Scene& scene, const scene::Changes&
 }
 
 void GpuScene::update_draws(const scene::Scene& scene) {
-  std::vector<shared::DrawRecord> records;
-  std::vector<DrawCommand> commands;
-  std::map<uint32_t, std::vector<size_t>> alpha;  // material -> into `pending`
-  struct Pending {
+  struct Draw {
     shared::DrawRecord record;
     DrawCommand command;
   };
-  std::vector<Pending> pending;
-  const auto emit = [&](Pending p) {
-    p.record.index = uint32_t(records.size());
-    p.command.base_instance = p.record.index;
-    records.push_back(p.record);
-    commands.push_back(p.command);
-  };
+  // By who sees them: the camera alone, both, lamps alone.
+  using Lists = std::array<std::vector<Draw>, 3>;
+  Lists opaque;
+  std::map<uint32_t, Lists> alpha;  // by material
   for (size_t i = 0; i < scene.instances().size(); ++i) {
     const scene::Instance& instance = scene.instances()[i];
     const scene::Mesh* source = scene.mesh_of(instance);
-    if (!source) continue;
+    const bool camera = instance.visibility & shared::SEEN_BY_CAMERA,
+               shadow = instance.visibility & shared::SEEN_BY_SHADOW;
+    if (!source || !(camera || shadow)) continue;
+    const size_t list = camera && shadow ? 1 : camera ? 0 : 2;
     const GpuMesh& mesh = meshes_.at(instance.mesh);
     for (const scene::MaterialRange& range : source->ranges) {
       const uint32_t material = material_index(scene.material_of(instance, range.slot));
-      Pending p;
-      p.record = {uint32_t(i), material, range.first, 0};
-      p.command = {range.count * 3, 1, (mesh.triangles.first + range.first) * 3,
-                   int32_t(mesh.vertices.first), 0};
-      if (materials_[material].facts.alpha) {
-        alpha[material].push_back(pending.size());
-        pending.push_back(p);
-      } else {
-        emit(p);
-      }
+      Lists& lists = materials_[material].facts.alpha ? alpha[material] : opaque;
+      lists[list].push_back({{uint32_t(i), material, range.first, 0},
+                             {range.count * 3, 1, (mesh.triangles.first + range.first) * 3,
+                              int32_t(mesh.vertices.first), 0}});
     }
   }
-  opaque_count_ = uint32_t(records.size());
+
+  std::vector<shared::DrawRecord> records;
+  std::vector<DrawCommand> commands;
+  const auto emit = [&](const Lists& lists) {
+    const DrawGroup group{uint32_t(records.size()), uint32_t(lists[0].size()),
+                          uint32_t(lists[1].size()), uint32_t(lists[2].size())};
+    for (const std::vector<Draw>& list : lists)
+      for (Draw draw : list) {
+        draw.record.index = draw.command.base_instance = uint32_t(records.size());
+        records.push_back(draw.record);
+        commands.push_back(draw.command);
+      }
+    return group;
+  };
+  opaque_ = emit(opaque);
   alpha_groups_.clear();
-  for (const auto& [material, draws] : alpha) {
-    alpha_groups_.push_back({material, uint32_t(records.size()), uint32_t(draws.size())});
-    for (size_t i : draws) emit(pending[i]);
-  }
+  for (const auto& [material, lists] : alpha) alpha_groups_.push_back({material, emit(lists)});
   record_count_ = uint32_t(records.size());
   records_ = gl::Buffer(std::span<const shared::DrawRecord>(records));
   commands_ = gl::Buffer(std::span<const DrawCommand>(commands));

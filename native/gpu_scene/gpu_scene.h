@@ -45,10 +45,26 @@ struct GpuMaterial : GpuShading {
   scene::MaterialFacts facts;
 };
 
-// Draw commands of one material that may discard fragments.
+// Whose view is drawn: instances may be hidden from the camera or from lamps.
+enum class ViewKind { kCamera, kShadow };
+
+// Draw commands that lie together, ordered by who sees them: the camera alone, both, lamps alone.
+struct DrawGroup {
+  uint32_t first = 0;
+  uint32_t camera_only = 0, both = 0, shadow_only = 0;
+
+  uint32_t first_of(ViewKind kind) const {
+    return kind == ViewKind::kCamera ? first : first + camera_only;
+  }
+  uint32_t count_of(ViewKind kind) const {
+    return both + (kind == ViewKind::kCamera ? camera_only : shadow_only);
+  }
+};
+
+// Those of one material that may discard fragments.
 struct AlphaGroup {
   uint32_t material = 0;
-  uint32_t first = 0, count = 0;
+  DrawGroup draws;
 };
 
 class GpuScene {
@@ -82,18 +98,19 @@ class GpuScene {
   // Binds parameters and images and sets the uniform `material_block` of the program in use.
   void bind_shading(const GpuShading& shading) const;
 
-  // Draws all opaque records, then the groups with alpha; `before_group` puts the right program in
-  // use and is called with null for the opaque records.
+  // Draws all opaque records that such a view sees, then the groups with alpha; `before_group` puts
+  // the right program in use and is called with null for the opaque records.
   template <class BeforeGroup>
-  void draw(BeforeGroup before_group) const {
+  void draw(ViewKind kind, BeforeGroup before_group) const {
     begin_draw();
-    if (opaque_count_ > 0) {
+    if (opaque_.count_of(kind) > 0) {
       before_group(static_cast<const GpuMaterial*>(nullptr));
-      draw_range(0, opaque_count_);
+      draw_range(opaque_.first_of(kind), opaque_.count_of(kind));
     }
     for (const AlphaGroup& group : alpha_groups_) {
+      if (group.draws.count_of(kind) == 0) continue;
       before_group(&materials_[group.material]);
-      draw_range(group.first, group.count);
+      draw_range(group.draws.first_of(kind), group.draws.count_of(kind));
     }
   }
 
@@ -136,7 +153,8 @@ class GpuScene {
   gl::Texture instances_, tables_, params_;
   gl::VertexArray vertex_array_;
   std::vector<AlphaGroup> alpha_groups_;
-  uint32_t opaque_count_ = 0, record_count_ = 0;
+  DrawGroup opaque_;
+  uint32_t record_count_ = 0;
   gl::Sampler samplers_[2][3];  // [linear, closest][repeat, extend, clip]
   std::vector<std::string> material_warnings_, image_warnings_;
 };

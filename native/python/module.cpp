@@ -64,13 +64,17 @@ std::vector<glm::mat4> matrices_of(const Array<float>& array) {
 }
 
 void set_instances(Engine& engine, const Array<int64_t>& meshes, const Array<float>& matrices,
-                   const Array<int>& material_offsets, const Array<int64_t>& material_table) {
+                   const Array<int>& material_offsets, const Array<int64_t>& material_table,
+                   const std::optional<Array<uint8_t>>& visibility) {
   const std::vector<glm::mat4> places = matrices_of(matrices);
-  if (places.size() != size_t(meshes.size()) || places.size() != size_t(material_offsets.size()))
+  if (places.size() != size_t(meshes.size()) || places.size() != size_t(material_offsets.size()) ||
+      (visibility && places.size() != size_t(visibility->size())))
     fail("instances were handed over with arrays of different lengths: please report it");
   std::vector<scene::Instance> instances(places.size());
-  for (size_t i = 0; i < places.size(); ++i)
+  for (size_t i = 0; i < places.size(); ++i) {
     instances[i] = {meshes.data()[i], places[i], material_offsets.data()[i]};
+    if (visibility) instances[i].visibility = visibility->data()[i];
+  }
   std::vector<Id> table(material_table.data(), material_table.data() + material_table.size());
   edit(engine, [&](Scene& scene) { scene.set_instances(std::move(instances), std::move(table)); });
 }
@@ -174,7 +178,8 @@ void bind_engine(py::module_& m) {
            py::arg("default_color") = "")
       .def("remove_mesh", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_mesh(id); }); })
       .def("set_instances", &set_instances, py::arg("mesh_ids"), py::arg("matrices"),
-           py::arg("material_offsets"), py::arg("material_table"))
+           py::arg("material_offsets"), py::arg("material_table"),
+           py::arg("visibility") = py::none())
       .def("set_instance_matrices", &set_instance_matrices, py::arg("indices"), py::arg("matrices"))
       .def("set_material", &set_material, py::arg("id"), py::arg("name"), py::arg("code"),
            py::arg("params"), py::arg("textures"), py::arg("facts"))

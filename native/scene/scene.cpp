@@ -169,6 +169,10 @@ void Scene::remove_mesh(Id id) {
 }
 
 void Scene::set_instances(std::vector<Instance> instances, std::vector<Id> material_table) {
+  for (const Instance& instance : instances)
+    if (instance.visibility & ~shared::SEEN_BY_ALL)
+      fail("an instance was handed over with visibility {}: only bits of {} have a meaning",
+           instance.visibility, shared::SEEN_BY_ALL);
   instances_ = std::move(instances);
   material_table_ = std::move(material_table);
   changes_.instances = true;
@@ -239,8 +243,9 @@ void Scene::set_world(World world) {
 }
 
 const Mesh* Scene::mesh_of(const Instance& instance) const {
+  if (!instance.visibility || !finite(instance.object_to_world)) return nullptr;
   const auto mesh = meshes_.find(instance.mesh);
-  return mesh != meshes_.end() && finite(instance.object_to_world) ? &mesh->second : nullptr;
+  return mesh != meshes_.end() ? &mesh->second : nullptr;
 }
 
 Id Scene::material_of(const Instance& instance, int slot) const {

@@ -7,6 +7,7 @@
 
 #include "scene/image.h"
 #include "scene/light.h"
+#include "scene/visibility_shared.h"
 
 #include <glm/glm.hpp>
 
@@ -84,6 +85,7 @@ struct Instance {
   Id mesh = 0;
   glm::mat4 object_to_world{1.0f};  // column-major, as GLM has it; not finite: draws nothing
   int material_offset = 0;          // in Scene::material_table, one entry a slot
+  uint32_t visibility = shared::SEEN_BY_ALL;  // SEEN_BY_... bits
 };
 
 struct TextureUse {
@@ -148,7 +150,8 @@ class Scene {
  public:
   void set_mesh(Id id, Mesh mesh);
   void remove_mesh(Id id);
-  // Instances whose matrix is not finite are left out (a warning) until they get another.
+  // Instances whose matrix is not finite are left out (a warning) until they get another. Throws
+  // Error on visibility bits that there are not.
   void set_instances(std::vector<Instance> instances, std::vector<Id> material_table);
   void set_instance_matrices(std::span<const int> indices, std::span<const glm::mat4> matrices);
   void set_material(Id id, Material material);
@@ -167,7 +170,8 @@ class Scene {
   const std::vector<Light>& lights() const { return lights_; }
   const World& world() const { return world_; }
 
-  // The mesh that an instance shows; null when there is none or its place is not finite.
+  // The mesh that an instance shows; null when there is none, no ray may meet it, or its place is
+  // not finite.
   const Mesh* mesh_of(const Instance& instance) const;
   // The material of a slot of an instance; 0 (the default grey) where none is set.
   Id material_of(const Instance& instance, int slot) const;

@@ -2,12 +2,14 @@
 // Random reads through texelFetch are several times faster than through storage blocks on llvmpipe.
 #include "base/packing.glsl"
 #include "gpu_scene/view_shared.h"
+#include "scene/visibility_shared.h"
 
 layout(binding = 0) uniform samplerBuffer vertex_positions;    // object space, metres
 layout(binding = 1) uniform usamplerBuffer triangle_vertices;  // three indices into the mesh's own
 layout(binding = 2) uniform usamplerBuffer corner_normals;     // three packed units, object space
 layout(binding = 3) uniform samplerBuffer corner_attributes;   // pairs of floats
-layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh record}
+layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh
+                                                      // record, visibility}
 layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute names of materials
 
 // Words of a mesh record in `tables`, then one word an attribute name: the first pair of floats and
@@ -40,6 +42,11 @@ Transform fetch_transform(uint instance, vec3 world_origin) {
 
 int fetch_mesh_record(uint instance) {
   return int(floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).x));
+}
+
+// SEEN_BY_CAMERA and its like.
+uint fetch_visibility(uint instance) {
+  return floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).y);
 }
 
 // The transpose of the inverse times the determinant: normals go through it whatever the scale,

@@ -36,6 +36,7 @@ class Snapshot : public ::testing::Test {
     setup.materials[0].textures = {{a, true, scene::TextureUse::Extension::kClip}};
     setup.materials[0].attributes = {"uv", "color"};
     setup.add_object(g, {1, 2}, glm::mat4(3.0f));
+    setup.instances[0].visibility = shared::SEEN_BY_SHADOW;
     setup.lights = {sun({0, 0, -1}, 3),
                     area({0, 0, 1}, {0, 0, -1}, 5, scene::AreaShape::kEllipse, 2, 3)};
     setup.lights[1].cast_shadow = false;
@@ -131,6 +132,7 @@ TEST_F(Snapshot, GivesTheSameSceneAndRequestBack) {
   ASSERT_EQ(again.instances().size(), 1u);
   EXPECT_EQ(again.instances()[0].object_to_world, scene.instances()[0].object_to_world);
   EXPECT_EQ(again.instances()[0].mesh, scene.instances()[0].mesh);
+  EXPECT_EQ(again.instances()[0].visibility, shared::SEEN_BY_SHADOW);
   EXPECT_EQ(again.material_table(), scene.material_table());
   ASSERT_EQ(again.lights().size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
