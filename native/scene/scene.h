@@ -5,6 +5,7 @@
 // colours are scene-linear Rec.709. Ids are chosen by the caller and positive.
 #pragma once
 
+#include "base/runs.h"
 #include "scene/image.h"
 #include "scene/light.h"
 #include "scene/visibility_shared.h"
@@ -135,9 +136,23 @@ struct Facts {
   }
 };
 
+// What of an array has changed: all of it, or runs of elements while their number stayed.
+struct ArrayChange {
+  bool all = true;
+  std::vector<Run> runs;
+};
+
+struct MeshChange {
+  ArrayChange positions, triangles, corner_normals;
+  std::vector<ArrayChange> attributes;  // as in Mesh; those beyond its end have changed throughout
+  // True when the mesh may have to lie elsewhere in memory.
+  bool resized() const { return positions.all || triangles.all; }
+};
+
 // What has changed since the last take_changes().
 struct Changes {
-  std::set<Id> meshes, materials, material_params, images;  // set or removed
+  std::map<Id, MeshChange> meshes;                   // set or removed
+  std::set<Id> materials, material_params, images;  // set or removed
   std::set<uint32_t> instance_matrices;
   bool instances = false, lights = false, world = false;
   bool any() const {
@@ -181,6 +196,8 @@ class Scene {
   Changes take_changes();
 
  private:
+  void note_change(Id id, MeshChange change);
+
   std::map<Id, Mesh> meshes_;
   std::vector<Instance> instances_;
   std::vector<Id> material_table_;

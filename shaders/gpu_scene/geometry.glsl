@@ -9,7 +9,7 @@ layout(binding = 1) uniform usamplerBuffer triangle_vertices;  // three indices 
 layout(binding = 2) uniform usamplerBuffer corner_normals;     // three packed units, object space
 layout(binding = 3) uniform samplerBuffer corner_attributes;   // pairs of floats
 layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh
-                                                      // record, visibility}
+                                                      // record, visibility, seed}
 layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute names of materials
 
 // Words of a mesh record in `tables`, then one word an attribute name: the first pair of floats and
@@ -17,7 +17,8 @@ layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute
 const int MESH_VERTEX_BASE = 0;
 const int MESH_TRIANGLE_BASE = 1;
 const int MESH_GENERATED = 2;  // six floats: scale and offset from object space to 0..1
-const int MESH_ATTRIBUTES = 8;
+const int MESH_SEED = 8;
+const int MESH_ATTRIBUTES = 9;
 const uint NO_ATTRIBUTE = 0xffffffffu;
 const uint IS_COLOR = 0x80000000u;  // two pairs a corner instead of one
 const int UV_DEFAULT = 0;
@@ -42,6 +43,12 @@ Transform fetch_transform(uint instance, vec3 world_origin) {
 
 int fetch_mesh_record(uint instance) {
   return int(floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).x));
+}
+
+// A number for drawing random ones: the same whatever the order of the scene's instances.
+uint fetch_seed(uint instance) {
+  vec4 bits = texelFetch(instances, int(instance) * 4 + 3);
+  return floatBitsToUint(bits.z) ^ table(int(floatBitsToUint(bits.x)) + MESH_SEED);
 }
 
 // SEEN_BY_CAMERA and its like.
