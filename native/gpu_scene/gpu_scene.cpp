@@ -127,32 +127,43 @@ void GpuScene::update_world(const scene::Scene& scene) {
   set_shading(*world_, "world", scene.world().code, scene.world().textures);
 }
 
-void GpuScene::update_images(const scene::Scene& scene, const scene::Changes& changes) {
+void GpuScene::update_images(scene::Scene& scene, const scene::Changes& changes) {
   image_warnings_.clear();
-  std::set<scene::Id> used;
-  for (const GpuMaterial& material : materials_)
-    for (const scene::TextureUse& use : material.textures) used.insert(use.image);
-  if (world_)
-    for (const scene::TextureUse& use : world_->textures) {
-      used.insert(use.image);
-      if (changes.images.count(use.image)) ++world_revision_;
-    }
+  std::map<scene::Id, bool> used;  // true: clipped by some sampler
+  const auto use = [&](const GpuShading& shading) {
+    for (const scene::TextureUse& texture : shading.textures)
+      used[texture.image] |= texture.extension == scene::TextureUse::Extension::kClip;
+  };
+  for (const GpuMaterial& material : materials_) use(material);
+  if (world_) {
+    use(*world_);
+    for (const scene::TextureUse& texture : world_->textures)
+      if (changes.images.count(texture.image)) ++world_revision_;
+  }
   std::erase_if(images_, [&](const auto& item) {
-    return !used.count(item.first) || changes.images.count(item.first);
+    const auto found = used.find(item.first);
+    if (found == used.end() || (found->second && !item.second.bordered)) return true;
+    const auto image = scene.images().find(item.first);
+    return image == scene.images().end() || image->second.serial != item.second.serial;
   });
-  for (scene::Id id : used) {
-    const auto source = scene.images().find(id);
-    if (images_.count(id)) continue;
-    if (source == scene.images().end()) {
-      need_missing();
-      continue;
+  for (const auto& [id, clipped] : used) {
+    if (!images_.count(id)) {
+      try {
+        const scene::Image* image = scene.image_with_pixels(id);
+        if (!image) {
+          need_missing();
+          continue;
+        }
+        images_[id] = upload_image(*image, device_.max_texture_size, clipped);
+        scene.release_pixels(id);
+      } catch (const Error& error) {
+        image_warnings_.push_back(fmt::format("An image shows magenta: {}.", error.what()));
+        need_missing();
+        continue;
+      }
     }
-    try {
-      images_[id] = upload_image(source->second, device_.max_texture_size);
-    } catch (const Error& error) {
-      image_warnings_.push_back(fmt::format("An image shows magenta: {}.", error.what()));
-      need_missing();
-    }
+    if (const std::string& warning = images_[id].warning; !warning.empty())
+      image_warnings_.push_back(warning);
   }
   const auto shade = [&](GpuShading& shading) {
     shading.srgb_mask = 0;
@@ -172,6 +183,19 @@ void GpuScene::update_images(const scene::Scene& scene, const scene::Changes& ch
   }
 }
 
+bool GpuScene::upload_ahead(scene::Scene& scene) {
+  for (const auto& [id, image] : scene.images()) {
+    // How grey is laid out depends on the materials, which are not known yet.
+    if (image.levels.empty() || image.channels == 1) continue;
+    const auto held = images_.find(id);
+    if (held != images_.end() && held->second.serial == image.serial) continue;
+    images_[id] = upload_image(image, device_.max_texture_size, true);
+    scene.release_pixels(id);
+    return true;
+  }
+  return false;
+}
+
 std::vector<std::string> GpuScene::warnings() const {
   std::vector<std::string> all;
   const auto add = [&](const std::vector<std::string>& list) {
@@ -187,7 +211,7 @@ void GpuScene::need_missing() {
   if (missing_.texture) return;
   const uint8_t magenta[4] = {255, 0, 255, 255};
   missing_.texture = gl::Texture({GL_TEXTURE_2D, GL_RGBA8, 1, 1, 1, 1});
-  missing_.texture.write(GL_RGBA, GL_UNSIGNED_BYTE, 4, magenta);
+  missing_.texture.write(GL_RGBA, GL_UNSIGNED_BYTE, magenta);
 }
 
 void GpuScene::check_programs(const std::function<void(const GpuMaterial&)>& compile,

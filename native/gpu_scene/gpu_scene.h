@@ -5,6 +5,7 @@
 #include "gl/context.h"
 #include "gl/program.h"
 #include "gpu_scene/draw_lists.h"
+#include "gpu_scene/image_upload.h"
 #include "gpu_scene/instance_list.h"
 #include "gpu_scene/mesh_store.h"
 #include "gpu_scene/units.h"
@@ -19,15 +20,6 @@
 #include <vector>
 
 namespace panoptes::gpu_scene {
-
-struct GpuImage {
-  gl::Texture texture;
-  bool srgb = false;  // sampling gives sRGB codes
-};
-
-// Uploads with all levels; averaged as light, not as codes, where the driver allows. Throws Error
-// when a side exceeds `max_size`.
-GpuImage upload_image(const scene::Image& image, int max_size);
 
 // A program's generated part and what must be bound for it.
 struct GpuShading {
@@ -51,6 +43,10 @@ class GpuScene {
 
   // Brings the GPU up to date with what changed in `scene` since the last call.
   void update(scene::Scene& scene);
+
+  // Uploads one image that has pixels and is not there yet, so that frames find it there; false when
+  // there is none.
+  bool upload_ahead(scene::Scene& scene);
 
   // Calls `compile` for every material's program; one that throws is replaced by a material that
   // always compiles, with a warning. The same for the world.
@@ -93,7 +89,7 @@ class GpuScene {
  private:
   void update_materials(const scene::Scene& scene, const scene::Changes& changes);
   void update_world(const scene::Scene& scene);
-  void update_images(const scene::Scene& scene, const scene::Changes& changes);
+  void update_images(scene::Scene& scene, const scene::Changes& changes);
   void need_missing();
   void update_params(const scene::Scene& scene);
   // True when mesh records have moved.

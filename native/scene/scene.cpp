@@ -265,12 +265,26 @@ void Scene::remove_material(Id id) {
 
 void Scene::set_image(Id id, Image image) {
   check_id(id, "image");
+  image.serial = ++image_serial_;
   images_.insert_or_assign(id, std::move(image));
   changes_.images.insert(id);
 }
 
 void Scene::remove_image(Id id) {
   if (images_.erase(id)) changes_.images.insert(id);
+}
+
+const Image* Scene::image_with_pixels(Id id) {
+  const auto found = images_.find(id);
+  if (found == images_.end()) return nullptr;
+  Image& image = found->second;
+  if (image.levels.empty() && image.reload) image.levels = image.reload().levels;
+  return &image;
+}
+
+void Scene::release_pixels(Id id) {
+  const auto found = images_.find(id);
+  if (found != images_.end() && found->second.reload) found->second.levels.clear();
 }
 
 void Scene::set_lights(std::vector<Light> lights) {

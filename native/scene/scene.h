@@ -174,6 +174,11 @@ class Scene {
   void remove_material(Id id);
   void set_image(Id id, Image image);
   void remove_image(Id id);
+  // The image with its pixels, made again if they were released; null when there is none. Throws
+  // Error when their source is gone.
+  const Image* image_with_pixels(Id id);
+  // Frees the pixels of an image that can be made again, which is no change of the scene.
+  void release_pixels(Id id);
   void set_lights(std::vector<Light> lights);
   void set_world(World world);
 
@@ -203,6 +208,7 @@ class Scene {
   std::vector<Id> material_table_;
   std::map<Id, Material> materials_;
   std::map<Id, Image> images_;
+  int64_t image_serial_ = 0;
   std::vector<Light> lights_;
   World world_;
   Changes changes_;

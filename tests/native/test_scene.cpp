@@ -264,7 +264,10 @@ TEST(SceneFacts, CountLampsAndTheWorld) {
 TEST(MakeImage, PremultipliesStraightColoursInTheirCodes) {
   const uint8_t rgba[8] = {128, 64, 255, 64, 255, 0, 7, 255};
   const auto bytes = [&](bool srgb, scene::AlphaMode mode) {
-    return scene::make_image("i", 2, 1, std::span<const uint8_t>(rgba), srgb, mode).bytes;
+    const scene::Image image =
+        scene::make_image("i", 2, 1, std::span<const uint8_t>(rgba), srgb, mode);
+    const std::span<const uint8_t> stored = image.pixels<uint8_t>();
+    return std::vector<uint8_t>(stored.begin(), stored.end());
   };
   using Bytes = std::vector<uint8_t>;
   EXPECT_EQ(bytes(true, scene::AlphaMode::kStraight), (Bytes{32, 16, 64, 64, 255, 0, 7, 255}));
@@ -278,8 +281,9 @@ TEST(MakeImage, KeepsFloatsFinite) {
   const float rgba[4] = {kNaN, 2, std::numeric_limits<float>::infinity(), 0.5f};
   const scene::Image image =
       scene::make_image("i", 1, 1, std::span<const float>(rgba), true, scene::AlphaMode::kStraight);
-  EXPECT_EQ(image.floats, (std::vector<float>{0, 1, 0, 0.5f}));
-  EXPECT_TRUE(image.is_float());
+  const std::span<const float> stored = image.pixels<float>();
+  EXPECT_EQ(std::vector<float>(stored.begin(), stored.end()),
+            (std::vector<float>{0, 1, 0, 0.5f}));
 }
 
 TEST(MakeImage, RefusesSizesThatDoNotFit) {

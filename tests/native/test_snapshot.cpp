@@ -110,8 +110,15 @@ TEST_F(Snapshot, GivesTheSameSceneAndRequestBack) {
     EXPECT_EQ(i.width, image.width);
     EXPECT_EQ(i.height, image.height);
     EXPECT_EQ(i.srgb, image.srgb);
-    EXPECT_EQ(i.bytes, image.bytes);
-    EXPECT_EQ(i.floats, image.floats);
+    EXPECT_EQ(i.type, image.type);
+    EXPECT_EQ(i.channels, image.channels);
+    ASSERT_EQ(i.levels.size(), image.levels.size());
+    for (size_t level = 0; level < i.levels.size(); ++level) {
+      const size_t bytes = size_t(i.levels[level].width) * size_t(i.levels[level].height) *
+                           i.texel_bytes();
+      EXPECT_EQ(std::memcmp(i.levels[level].pixels.get(), image.levels[level].pixels.get(), bytes),
+                0);
+    }
   }
   ASSERT_EQ(again.materials().size(), 2u);
   for (const auto& [id, material] : scene.materials()) {
