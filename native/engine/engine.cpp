@@ -108,6 +108,15 @@ std::shared_ptr<Job> Engine::render(RenderRequest request) {
   return job;
 }
 
+void Engine::upload_images() {
+  require_open();
+  {
+    std::lock_guard lock(queue_mutex_);
+    images_waiting_ = true;
+  }
+  queue_condition_.notify_one();
+}
+
 void Engine::run(const gl::ContextOptions& options, std::function<void(std::string)> started) {
   std::unique_ptr<RenderThread> renderer;
   try {
@@ -124,10 +133,21 @@ void Engine::run(const gl::ContextOptions& options, std::function<void(std::stri
     {
       std::unique_lock lock(queue_mutex_);
       current_.reset();
-      queue_condition_.wait(lock, [&] { return closed_ || !queue_.empty(); });
-      if (queue_.empty()) break;  // closed, and every job has been told
-      job = current_ = queue_.front();
-      queue_.pop_front();
+      queue_condition_.wait(lock, [&] { return closed_ || !queue_.empty() || images_waiting_; });
+      if (!queue_.empty()) {
+        job = current_ = queue_.front();
+        queue_.pop_front();
+      } else if (closed_) {
+        break;  // every job has been told
+      }
+      if (!job) images_waiting_ = false;
+    }
+    if (!job) {
+      if (renderer->upload_ahead(scene_, scene_mutex_)) {
+        std::lock_guard lock(queue_mutex_);
+        images_waiting_ = true;  // there may be more
+      }
+      continue;
     }
     renderer->render(*job, scene_, scene_mutex_);
   }

@@ -78,6 +78,10 @@ class Engine {
     return change(scene_);
   }
 
+  // Lets the render thread upload images while it has nothing to render, so that images that are
+  // still being decoded need not wait for those that are done, nor all be in memory at once.
+  void upload_images();
+
   // Queues a frame of the scene as it is when the frame's turn comes. Throws Error when the request
   // makes no sense.
   std::shared_ptr<Job> render(RenderRequest request);
@@ -94,6 +98,7 @@ class Engine {
   std::deque<std::shared_ptr<Job>> queue_;
   std::shared_ptr<Job> current_;
   std::atomic<bool> closed_{false};
+  bool images_waiting_ = false;  // guarded by queue_mutex_
   std::thread thread_;
 };
 

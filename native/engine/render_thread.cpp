@@ -53,6 +53,15 @@ void RenderThread::render(Job& job, scene::Scene& scene, std::mutex& mutex) {
   job.end(std::move(error));
 }
 
+bool RenderThread::upload_ahead(scene::Scene& scene, std::mutex& mutex) {
+  std::lock_guard lock(mutex);
+  try {
+    return gpu_scene_.upload_ahead(scene);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 void RenderThread::publish(Job& job, const film::PassSet& passes, uint32_t samples) {
   for (int i = 0; i < film::kPassCount; ++i)
     if (passes[size_t(i)])

@@ -20,6 +20,8 @@ class RenderThread {
 
   // Renders the job and ends it, whatever happens. Holds `mutex` only while the scene is uploaded.
   void render(Job& job, scene::Scene& scene, std::mutex& mutex);
+  // Uploads an image that waits, if there is one; what fails is left for the frame that needs it.
+  bool upload_ahead(scene::Scene& scene, std::mutex& mutex);
 
  private:
   void render_frame(Job& job, scene::Scene& scene, std::mutex& mutex);

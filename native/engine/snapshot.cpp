@@ -18,7 +18,7 @@ constexpr uint32_t kVersion = 2;
 class Writer {
  public:
   explicit Writer(const std::string& path) : file_(path, std::ios::binary), path_(path) {}
-  void bytes(void* data, size_t count) {
+  void bytes(const void* data, size_t count) {
     file_.write(static_cast<const char*>(data), std::streamsize(count));
   }
   void finish() {
@@ -46,8 +46,9 @@ class Reader {
   }
   // Sizes come from the file: never allocate more than it can still hold.
   void check_size(uint64_t count, size_t each) {
-    if (each && count > left_ / each) fail("snapshot '{}' is damaged: write it again", path_);
+    if (each && count > left_ / each) damaged();
   }
+  [[noreturn]] void damaged() const { fail("snapshot '{}' is damaged: write it again", path_); }
 
  private:
   std::ifstream file_;
@@ -115,9 +116,23 @@ void transfer(A& a, scene::Image& i) {
   transfer(a, i.name);
   transfer(a, i.width);
   transfer(a, i.height);
+  transfer(a, i.type);
+  transfer(a, i.channels);
   transfer(a, i.srgb);
-  transfer(a, i.bytes);
-  transfer(a, i.floats);
+  // Coarser levels are made again.
+  if constexpr (std::is_same_v<A, Reader>) {
+    if (i.width < 1 || i.height < 1 || i.type > scene::PixelType::kFloat ||
+        (i.channels != 1 && i.channels != 2 && i.channels != 4))
+      a.damaged();
+    a.check_size(uint64_t(i.width) * uint64_t(i.height), i.texel_bytes());
+    i = scene::new_image(i.name, i.width, i.height, i.type, i.channels, i.srgb);
+    a.bytes(i.pixels().data(), i.bytes());
+    scene::make_levels(i);
+  } else {
+    const scene::Image whole = i.levels.empty() && i.reload ? i.reload() : i;
+    if (whole.levels.empty()) fail("image '{}' has no pixels: reload it", i.name);
+    a.bytes(whole.levels[0].pixels.get(), whole.bytes());
+  }
 }
 
 template <class A>

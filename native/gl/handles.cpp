@@ -14,13 +14,16 @@ int bytes_per_texel(GLenum format) {
   switch (format) {
     case GL_R8:
     case GL_R8UI: return 1;
+    case GL_R16:
     case GL_R16F:
     case GL_RG8: return 2;
     case GL_RGBA8:
-    case GL_SRGB8_ALPHA8:
+    case GL_RG16:
+    case GL_RG16F:
     case GL_R32F:
     case GL_R32UI:
     case GL_DEPTH_COMPONENT32F: return 4;
+    case GL_RGBA16:
     case GL_RGBA16F:
     case GL_RG32F:
     case GL_RG32UI: return 8;
@@ -118,9 +121,12 @@ Texture::~Texture() {
   counters().freed(bytes_);
 }
 
-void Texture::write(GLenum format, GLenum type, int64_t bytes, const void* data) {
-  glTextureSubImage2D(id_, 0, 0, 0, options_.width, options_.height, format, type, data);
-  counters().uploaded(bytes);
+void Texture::write(GLenum format, GLenum type, const void* data, int level) {
+  const int width = std::max(options_.width >> level, 1),
+            height = std::max(options_.height >> level, 1);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(id_, level, 0, 0, width, height, format, type, data);
+  counters().uploaded(int64_t(width) * height * bytes_per_texel(options_.format));
 }
 
 void Texture::bind_image(int unit, GLenum access) const {

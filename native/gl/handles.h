@@ -79,8 +79,8 @@ class Texture : public Handle {
   ~Texture();
 
   const TextureOptions& options() const { return options_; }
-  // Uploads level 0 of a 2D texture (rows bottom to top).
-  void write(GLenum format, GLenum type, int64_t bytes, const void* data);
+  // Uploads a level of a 2D texture (rows bottom to top, without gaps).
+  void write(GLenum format, GLenum type, const void* data, int level = 0);
   void bind(int unit) const { glBindTextureUnit(GLuint(unit), id_); }
   void bind_image(int unit, GLenum access) const;
 

@@ -4,7 +4,11 @@
 
 #include "gl/context.h"
 #include "gl/program.h"
-#include "gpu_scene/heap.h"
+#include "gpu_scene/draw_lists.h"
+#include "gpu_scene/image_upload.h"
+#include "gpu_scene/instance_list.h"
+#include "gpu_scene/mesh_store.h"
+#include "gpu_scene/units.h"
 #include "gpu_scene/view_shared.h"
 #include "scene/scene.h"
 
@@ -17,38 +21,20 @@
 
 namespace panoptes::gpu_scene {
 
-// Texture units that the geometry and the materials are bound to (gpu_scene/*.glsl).
-constexpr int kVertexUnit = 0, kTriangleUnit = 1, kNormalUnit = 2, kAttributeUnit = 3,
-              kInstanceUnit = 4, kTableUnit = 5, kParamUnit = 6, kFreeUnit = 7, kImageUnit = 8;
-
-struct GpuImage {
-  gl::Texture texture;
-  bool srgb = false;  // sampling gives sRGB codes
-};
-
-// Uploads with all levels; averaged as light, not as codes, where the driver allows. Throws Error
-// when a side exceeds `max_size`.
-GpuImage upload_image(const scene::Image& image, int max_size);
-
 // A program's generated part and what must be bound for it.
 struct GpuShading {
   std::string name;
   std::string code;
-  uint32_t params = 0;      // first vec4
-  uint32_t attributes = 0;  // first word in the tables
+  Range params;      // vec4s
+  Range attributes;  // words in the tables
   uint32_t srgb_mask = 0;
   std::vector<scene::TextureUse> textures;
+  std::vector<std::string> warnings;  // what of it could not be shown as asked
 };
 
 struct GpuMaterial : GpuShading {
   scene::Id id = 0;
   scene::MaterialFacts facts;
-};
-
-// Draw commands of one material that may discard fragments.
-struct AlphaGroup {
-  uint32_t material = 0;
-  uint32_t first = 0, count = 0;
 };
 
 class GpuScene {
@@ -58,6 +44,10 @@ class GpuScene {
   // Brings the GPU up to date with what changed in `scene` since the last call.
   void update(scene::Scene& scene);
 
+  // Uploads one image that has pixels and is not there yet, so that frames find it there; false when
+  // there is none.
+  bool upload_ahead(scene::Scene& scene);
+
   // Calls `compile` for every material's program; one that throws is replaced by a material that
   // always compiles, with a warning. The same for the world.
   void check_programs(const std::function<void(const GpuMaterial&)>& compile,
@@ -66,8 +56,8 @@ class GpuScene {
   const std::vector<GpuMaterial>& materials() const { return materials_; }
   const std::optional<GpuShading>& world() const { return world_; }
   int world_image_width() const { return world_image_width_; }
-  const gl::Buffer& records() const { return records_; }
-  bool empty() const { return record_count_ == 0; }
+  const gl::Buffer& records() const { return draws_.records(); }
+  bool empty() const { return draws_.empty(); }
   // Grows with every change, so that what was derived from the scene can be kept until then.
   int64_t revision() const { return revision_; }
   // The same for the world alone.
@@ -82,63 +72,51 @@ class GpuScene {
   // Binds parameters and images and sets the uniform `material_block` of the program in use.
   void bind_shading(const GpuShading& shading) const;
 
-  // Draws all opaque records, then the groups with alpha; `before_group` puts the right program in
-  // use and is called with null for the opaque records.
+  // Draws all opaque records that such a view sees, then the groups with alpha; `before_group` puts
+  // the right program in use and is called with null for the opaque records.
   template <class BeforeGroup>
-  void draw(BeforeGroup before_group) const {
+  void draw(ViewKind kind, BeforeGroup before_group) const {
     begin_draw();
-    if (opaque_count_ > 0) {
-      before_group(static_cast<const GpuMaterial*>(nullptr));
-      draw_range(0, opaque_count_);
-    }
-    for (const AlphaGroup& group : alpha_groups_) {
-      before_group(&materials_[group.material]);
-      draw_range(group.first, group.count);
-    }
+    draws_.draw(kind, [&](uint32_t material) {
+      before_group(material == DrawLists::kOpaque ? static_cast<const GpuMaterial*>(nullptr)
+                                                  : &materials_[material]);
+    });
   }
 
   // What could not be done as asked, for the artist.
   std::vector<std::string> warnings() const;
 
  private:
-  struct GpuMesh {
-    Range vertices, triangles, normals;
-    std::vector<Range> attributes;  // as in scene::Mesh
-    uint32_t record = 0;            // first word in the tables
-  };
-
-  void update_meshes(const scene::Scene& scene, const scene::Changes& changes);
-  void update_materials(const scene::Scene& scene);
-  void update_images(const scene::Scene& scene, const scene::Changes& changes);
+  void update_materials(const scene::Scene& scene, const scene::Changes& changes);
+  void update_world(const scene::Scene& scene);
+  void update_images(scene::Scene& scene, const scene::Changes& changes);
   void need_missing();
   void update_params(const scene::Scene& scene);
-  void update_tables(const scene::Scene& scene);
-  void update_instances(const scene::Scene& scene, const scene::Changes& changes);
+  // True when mesh records have moved.
+  bool update_attributes(const scene::Scene& scene);
   void update_draws(const scene::Scene& scene);
-  uint32_t material_index(scene::Id id) const;
-  GpuShading make_shading(const std::string& name, const std::string& code,
-                          const std::vector<scene::TextureUse>& textures);
+  // Everything of `shading` but what lies in shared buffers.
+  void set_shading(GpuShading& shading, const std::string& name, const std::string& code,
+                   const std::vector<scene::TextureUse>& textures) const;
+  void release(GpuShading& shading);
 
   void begin_draw() const;
-  void draw_range(uint32_t first, uint32_t count) const;
 
   gl::DeviceInfo device_;
   int64_t revision_ = 0, world_revision_ = 0;
-  Heap vertices_, triangles_, normals_, attributes_;
-  std::map<scene::Id, GpuMesh> meshes_;
+  MeshStore meshes_;
+  InstanceList instances_;
+  DrawLists draws_;
+  MirroredHeap<glm::vec4> params_;
   std::map<scene::Id, GpuImage> images_;
   GpuImage missing_;
   std::vector<GpuMaterial> materials_;
   std::map<scene::Id, uint32_t> material_indices_;
   std::optional<GpuShading> world_;
   int world_image_width_ = 0;
-  gl::Buffer instances_buffer_, tables_buffer_, params_buffer_, records_, commands_;
-  gl::Texture instances_, tables_, params_;
   gl::VertexArray vertex_array_;
-  std::vector<AlphaGroup> alpha_groups_;
-  uint32_t opaque_count_ = 0, record_count_ = 0;
   gl::Sampler samplers_[2][3];  // [linear, closest][repeat, extend, clip]
-  std::vector<std::string> material_warnings_, image_warnings_;
+  std::vector<std::string> image_warnings_;
 };
 
 }  // namespace panoptes::gpu_scene

@@ -25,6 +25,13 @@ Range RangeAllocator::allocate(uint32_t count) {
   return {kFull, 0};
 }
 
+Range RangeAllocator::allocate_or_grow(uint32_t count) {
+  Range found = allocate(count);
+  if (found.first != kFull) return found;
+  grow(std::max(capacity_ + count, capacity_ + capacity_ / 2));
+  return allocate(count);
+}
+
 void RangeAllocator::release(const Range& range) {
   if (range.count == 0) return;
   auto [it, inserted] = free_.emplace(range.first, range.count);
@@ -53,6 +60,13 @@ void Heap::store(Range& range, uint32_t count, const void* data) {
     range = found;
   }
   buffer_.write(int64_t(range.first) * stride_, int64_t(count) * stride_, data);
+}
+
+void Heap::write(const Range& range, std::span<const Run> runs, const void* data) {
+  for (const Run& run : runs)
+    buffer_.write((int64_t(range.first) + int64_t(run.first)) * stride_,
+                  int64_t(run.count) * stride_,
+                  static_cast<const char*>(data) + int64_t(run.first) * stride_);
 }
 
 void Heap::release(Range& range) {

@@ -2,10 +2,12 @@
 // that an edited mesh uploads its own range and nothing else.
 #pragma once
 
+#include "base/runs.h"
 #include "gl/handles.h"
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 
 namespace panoptes::gpu_scene {
@@ -23,6 +25,8 @@ class RangeAllocator {
   void grow(uint32_t capacity);
   // A run of `count` elements, or first == kFull when none is long enough.
   Range allocate(uint32_t count);
+  // The same, but extends the space by half, or by what is needed, when none is long enough.
+  Range allocate_or_grow(uint32_t count);
   void release(const Range& range);
   uint32_t capacity() const { return capacity_; }
   static constexpr uint32_t kFull = 0xffffffffu;
@@ -42,6 +46,8 @@ class Heap {
 
   // Makes `range` hold `count` elements from `data`, in place when the count is unchanged.
   void store(Range& range, uint32_t count, const void* data);
+  // Replaces just these elements of a range whose new content is `data`.
+  void write(const Range& range, std::span<const Run> runs, const void* data);
   void release(Range& range);
 
   const gl::Buffer& buffer() const { return buffer_; }

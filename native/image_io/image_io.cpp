@@ -6,54 +6,106 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace panoptes::image_io {
 
 namespace {
 
-// Spreads 1 to n stored channels over four; grey becomes RGB, missing alpha becomes opaque.
-template <class T>
-std::vector<T> to_rgba(const std::vector<T>& in, int channels, T opaque) {
-  const size_t pixels = in.size() / size_t(channels);
-  std::vector<T> out(pixels * 4);
-  for (size_t i = 0; i < pixels; ++i) {
-    const T* p = &in[i * size_t(channels)];
-    T* q = &out[i * 4];
-    const bool grey = channels < 3;
-    q[0] = p[0];
-    q[1] = grey ? p[0] : p[1];
-    q[2] = grey ? p[0] : p[2];
-    q[3] = channels == 2 ? p[1] : channels > 3 ? p[3] : opaque;
+// Rows that are decoded at once: little enough to stay in the processor's cache.
+constexpr int kRows = 32;
+
+scene::PixelType type_of(const OIIO::ImageSpec& spec) {
+  switch (spec.format.basetype) {
+    case OIIO::TypeDesc::UINT8: return scene::PixelType::kByte;
+    case OIIO::TypeDesc::UINT16: return scene::PixelType::kShort;
+    case OIIO::TypeDesc::HALF: return scene::PixelType::kHalf;
+    default: return scene::PixelType::kFloat;
   }
-  return out;
+}
+
+OIIO::TypeDesc decoded_as(scene::PixelType type) {
+  switch (type) {
+    case scene::PixelType::kByte: return OIIO::TypeDesc::UINT8;
+    case scene::PixelType::kShort: return OIIO::TypeDesc::UINT16;
+    case scene::PixelType::kHalf: return OIIO::TypeDesc::HALF;
+    default: return OIIO::TypeDesc::FLOAT;
+  }
+}
+
+// A header may promise pixels that the file cannot hold: memory for them is never asked for.
+void check_promise(const std::string& name, const OIIO::ImageSpec& spec, uint64_t file_bytes) {
+  // Whatever is smaller is cheap to try; no format packs an image of this size closer.
+  constexpr uint64_t kSmall = uint64_t(1) << 28, kClosest = 4000;
+  const uint64_t promised = uint64_t(spec.image_bytes());
+  if (promised > kSmall && promised / kClosest > file_bytes)
+    fail("image '{}' is damaged, since {} bytes cannot hold {}x{} pixels: replace the file", name,
+         file_bytes, spec.width, spec.height);
+}
+
+// Spreads `stored` channels a pixel over those of the image; missing alpha becomes `opaque`.
+template <class T>
+void spread(const T* in, int stored, T* out, int channels, size_t pixels, T opaque) {
+  if (stored == 3 && channels == 4) {  // by far the most common, and fast when the counts are known
+    for (size_t i = 0; i < pixels; ++i, in += 3, out += 4) {
+      out[0] = in[0];
+      out[1] = in[1];
+      out[2] = in[2];
+      out[3] = opaque;
+    }
+    return;
+  }
+  const int copied = std::min(stored, channels);
+  for (size_t i = 0; i < pixels; ++i, in += stored, out += channels) {
+    for (int c = 0; c < copied; ++c) out[c] = in[c];
+    if (copied < channels) out[channels - 1] = opaque;
+  }
 }
 
 template <class T>
-std::vector<T> read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
-                           const std::string& name, T opaque) {
-  std::vector<T> stored(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
-  // The file's first row is the top one; a negative stride writes it last.
-  const OIIO::stride_t row = OIIO::stride_t(spec.width) * spec.nchannels * int(sizeof(T));
-  T* last = stored.data() + size_t(spec.height - 1) * size_t(spec.width) * size_t(spec.nchannels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDescFromC<T>::value(), last,
-                        OIIO::AutoStride, -row))
-    fail("image '{}' cannot be read ({}): replace or re-save the file", name, input.geterror());
-  return to_rgba(stored, spec.nchannels, opaque);
+void read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, scene::Image& image,
+                 T opaque) {
+  // Tiles come all at once.
+  const int rows = spec.tile_width ? spec.height : std::min(kRows, spec.height);
+  const OIIO::TypeDesc type = decoded_as(image.type);
+  const size_t width = size_t(spec.width), stored = size_t(spec.nchannels);
+  const auto block = std::make_unique_for_overwrite<T[]>(width * size_t(rows) * stored);
+  for (int y = 0; y < spec.height; y += rows) {
+    const int end = std::min(y + rows, spec.height);
+    const bool read = spec.tile_width ? input.read_image(0, 0, 0, spec.nchannels, type, block.get())
+                                      : input.read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0,
+                                                             spec.nchannels, type, block.get());
+    if (!read)
+      fail("image '{}' cannot be read ({}): replace or re-save the file", image.name,
+           input.geterror());
+    // The file's first row is the top one.
+    for (int row = y; row < end; ++row)
+      spread(block.get() + size_t(row - y) * width * stored, int(stored),
+             image.pixels<T>().data() +
+                 size_t(spec.height - 1 - row) * width * size_t(image.channels),
+             image.channels, width, opaque);
+  }
 }
 
-scene::Image read(std::unique_ptr<OIIO::ImageInput> input, const std::string& name, bool srgb,
-                  scene::AlphaMode alpha) {
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
-    fail("image '{}' has no pixels: replace the file", name);
-  if (spec.format.basetype == OIIO::TypeDesc::UINT8)
-    return scene::make_image(name, spec.width, spec.height,
-                             std::span<const uint8_t>(
-                                 read_pixels<uint8_t>(*input, spec, name, uint8_t(255))),
-                             srgb, alpha);
-  const std::vector<float> pixels = read_pixels<float>(*input, spec, name, 1.0f);
-  return scene::make_image(name, spec.width, spec.height, std::span<const float>(pixels), srgb,
-                           alpha);
+scene::Image read(OIIO::ImageInput& input, const std::string& name, bool srgb,
+                  scene::AlphaMode alpha, uint64_t file_bytes) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
+    fail("image '{}' has no pixels of a picture: replace the file", name);
+  check_promise(name, spec, file_bytes);
+  const int channels = spec.nchannels > 2 ? 4 : spec.nchannels;
+  scene::Image image =
+      scene::new_image(name, spec.width, spec.height, type_of(spec), channels, srgb);
+  switch (image.type) {
+    case scene::PixelType::kByte: read_pixels<uint8_t>(input, spec, image, 255); break;
+    case scene::PixelType::kShort: read_pixels<uint16_t>(input, spec, image, 65535); break;
+    case scene::PixelType::kHalf: read_pixels<uint16_t>(input, spec, image, 0x3c00); break;
+    case scene::PixelType::kFloat: read_pixels<float>(input, spec, image, 1.0f); break;
+  }
+  const bool has_alpha = spec.nchannels == 2 || spec.nchannels > 3;
+  // Alpha 1 leaves colours as they are, whatever is said of it.
+  scene::finish_image(image, has_alpha ? alpha : scene::AlphaMode::kPremultiplied);
+  return image;
 }
 
 OIIO::ImageSpec keep_alpha_as_stored() {
@@ -71,20 +123,24 @@ scene::Image load_file(const std::string& name, const std::string& path, bool sr
   if (!input)
     fail("image '{}' cannot be opened at '{}' ({}): find the missing file or pack it", name, path,
          OIIO::geterror());
-  return read(std::move(input), name, srgb, alpha);
+  scene::Image image = read(*input, name, srgb, alpha, OIIO::Filesystem::file_size(path));
+  image.reload = [name, path, srgb, alpha] { return load_file(name, path, srgb, alpha); };
+  return image;
 }
 
-scene::Image load_memory(const std::string& name, std::span<const char> data, bool srgb,
-                         scene::AlphaMode alpha) {
+scene::Image load_memory(const std::string& name, std::shared_ptr<const std::string> data,
+                         bool srgb, scene::AlphaMode alpha) {
   // Every reader looks for its own mark at the data's start; Targa has none and comes last.
   for (const char* format : {"png", "jpeg", "openexr", "hdr", "tiff", "webp", "bmp", "targa"}) {
     auto input = OIIO::ImageInput::create(format);
     if (!input || !input->supports("ioproxy")) continue;
-    OIIO::Filesystem::IOMemReader reader(const_cast<char*>(data.data()), data.size());
+    OIIO::Filesystem::IOMemReader reader(const_cast<char*>(data->data()), data->size());
     OIIO::ImageSpec spec;
     input->set_ioproxy(&reader);
-    if (input->open(name, spec, keep_alpha_as_stored()))
-      return read(std::move(input), name, srgb, alpha);
+    if (!input->open(name, spec, keep_alpha_as_stored())) continue;
+    scene::Image image = read(*input, name, srgb, alpha, data->size());
+    image.reload = [name, data, srgb, alpha] { return load_memory(name, data, srgb, alpha); };
+    return image;
   }
   OIIO::geterror();  // what the refusals left behind would show up with the next image
   fail("packed image '{}' is in a format that cannot be decoded: unpack it and re-save it as PNG",

@@ -64,13 +64,17 @@ std::vector<glm::mat4> matrices_of(const Array<float>& array) {
 }
 
 void set_instances(Engine& engine, const Array<int64_t>& meshes, const Array<float>& matrices,
-                   const Array<int>& material_offsets, const Array<int64_t>& material_table) {
+                   const Array<int>& material_offsets, const Array<int64_t>& material_table,
+                   const std::optional<Array<uint8_t>>& visibility) {
   const std::vector<glm::mat4> places = matrices_of(matrices);
-  if (places.size() != size_t(meshes.size()) || places.size() != size_t(material_offsets.size()))
+  if (places.size() != size_t(meshes.size()) || places.size() != size_t(material_offsets.size()) ||
+      (visibility && places.size() != size_t(visibility->size())))
     fail("instances were handed over with arrays of different lengths: please report it");
   std::vector<scene::Instance> instances(places.size());
-  for (size_t i = 0; i < places.size(); ++i)
+  for (size_t i = 0; i < places.size(); ++i) {
     instances[i] = {meshes.data()[i], places[i], material_offsets.data()[i]};
+    if (visibility) instances[i].visibility = visibility->data()[i];
+  }
   std::vector<Id> table(material_table.data(), material_table.data() + material_table.size());
   edit(engine, [&](Scene& scene) { scene.set_instances(std::move(instances), std::move(table)); });
 }
@@ -102,12 +106,15 @@ void set_world(Engine& engine, const std::string& code, const Array<float>& valu
   edit(engine, [&](Scene& scene) { scene.set_world(std::move(world)); });
 }
 
-void set_image_pixels(Engine& engine, Id id, const std::string& name, const Array<float>& pixels,
+// T: uint8_t or float; bytes stay bytes.
+template <class T>
+void set_image_pixels(Engine& engine, Id id, const std::string& name, const py::array_t<T>& pixels,
                       bool srgb, const std::string& alpha) {
   if (pixels.ndim() != 3 || pixels.shape(2) != 4)
     fail("image '{}' must have shape (H, W, 4): please report it", name);
-  scene::Image image = scene::make_image(name, int(pixels.shape(1)), int(pixels.shape(0)),
-                                         std::span(pixels.data(), size_t(pixels.size())), srgb,
+  const auto values = Array<T>::ensure(pixels);
+  scene::Image image = scene::make_image(name, int(values.shape(1)), int(values.shape(0)),
+                                         std::span(values.data(), size_t(values.size())), srgb,
                                          alpha_mode(alpha));
   edit(engine, [&](Scene& scene) { scene.set_image(id, std::move(image)); });
 }
@@ -174,7 +181,8 @@ void bind_engine(py::module_& m) {
            py::arg("default_color") = "")
       .def("remove_mesh", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_mesh(id); }); })
       .def("set_instances", &set_instances, py::arg("mesh_ids"), py::arg("matrices"),
-           py::arg("material_offsets"), py::arg("material_table"))
+           py::arg("material_offsets"), py::arg("material_table"),
+           py::arg("visibility") = py::none())
       .def("set_instance_matrices", &set_instance_matrices, py::arg("indices"), py::arg("matrices"))
       .def("set_material", &set_material, py::arg("id"), py::arg("name"), py::arg("code"),
            py::arg("params"), py::arg("textures"), py::arg("facts"))
@@ -191,17 +199,21 @@ void bind_engine(py::module_& m) {
              py::gil_scoped_release release;
              scene::Image image = image_io::load_file(name, path, srgb, alpha_mode(alpha));
              e.edit([&](Scene& s) { s.set_image(id, std::move(image)); });
+             e.upload_images();
            })
       .def("set_image_encoded",
            [](Engine& e, Id id, const std::string& name, const py::bytes& data, bool srgb,
               const std::string& alpha) {
-             const std::string_view view(data);
-             py::gil_scoped_release release;  // `data` is held by the caller
-             scene::Image image =
-                 image_io::load_memory(name, {view.data(), view.size()}, srgb, alpha_mode(alpha));
+             auto copy = std::make_shared<const std::string>(data);
+             py::gil_scoped_release release;
+             scene::Image image = image_io::load_memory(name, copy, srgb, alpha_mode(alpha));
              e.edit([&](Scene& s) { s.set_image(id, std::move(image)); });
+             e.upload_images();
            })
-      .def("set_image_pixels", &set_image_pixels)
+      .def("set_image_pixels", &set_image_pixels<uint8_t>, py::arg("id"), py::arg("name"),
+           py::arg("pixels").noconvert(), py::arg("srgb"), py::arg("alpha"))
+      .def("set_image_pixels", &set_image_pixels<float>, py::arg("id"), py::arg("name"),
+           py::arg("pixels"), py::arg("srgb"), py::arg("alpha"))
       .def("remove_image", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_image(id); }); })
       .def("set_lights",
            [](Engine& e, const py::list& list) {

@@ -91,7 +91,7 @@ void GBuffer::rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& prog
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_TRUE);
   if (!scene.empty())
-    scene.draw([&](const gpu_scene::GpuMaterial* material) {
+    scene.draw(gpu_scene::ViewKind::kCamera, [&](const gpu_scene::GpuMaterial* material) {
       programs.get(raster_program(material, {.depth_only = false})).use();
       if (material) scene.bind_shading(*material);
     });

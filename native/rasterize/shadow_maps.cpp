@@ -62,7 +62,7 @@ void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
       const float far_depth = 0.0f;
       glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, &far_depth);
       if (!scene.empty())
-        scene.draw([&](const gpu_scene::GpuMaterial* material) {
+        scene.draw(gpu_scene::ViewKind::kShadow, [&](const gpu_scene::GpuMaterial* material) {
           programs.get(raster_program(material, {.depth_only = true})).use();
           if (material) scene.bind_shading(*material);
         });

@@ -25,6 +25,39 @@ void check_id(Id id, const char* what) {
   if (id <= 0) fail("a {} was handed over with id {}: ids must be positive", what, id);
 }
 
+// Less than this many equal elements between two edited runs are sent along.
+constexpr size_t kRunGap = 64;
+
+template <class T>
+ArrayChange change_of(const std::vector<T>& before, const std::vector<T>& now) {
+  if (before.size() != now.size()) return {};
+  return {false, differing_runs(std::span<const T>(before), std::span<const T>(now), kRunGap)};
+}
+
+ArrayChange change_of(const Attribute& before, const Attribute& now) {
+  if (before.channels != now.channels || before.values.size() != now.values.size()) return {};
+  // In pairs of floats, as they are stored.
+  return {false, differing_runs(before.values.data(), now.values.data(), now.values.size() / 2,
+                                2 * sizeof(float), kRunGap)};
+}
+
+MeshChange change_of(const Mesh& before, const Mesh& now) {
+  MeshChange change{change_of(before.positions, now.positions),
+                    change_of(before.triangles, now.triangles),
+                    change_of(before.corner_normals, now.corner_normals),
+                    {}};
+  const size_t common = std::min(before.attributes.size(), now.attributes.size());
+  for (size_t i = 0; i < common; ++i)
+    change.attributes.push_back(change_of(before.attributes[i], now.attributes[i]));
+  return change;
+}
+
+void join(ArrayChange& due, const ArrayChange& change) {
+  due.all |= change.all;
+  due.runs.insert(due.runs.end(), change.runs.begin(), change.runs.end());
+  merge_runs(due.runs, kRunGap);
+}
+
 void check_indices(const MeshInput& in) {
   const int vertices = int(in.positions.size()), loops = int(in.loop_normals.size());
   for (size_t t = 0; t < in.triangle_vertices.size(); ++t)
@@ -157,18 +190,35 @@ void Scene::set_mesh(Id id, Mesh mesh) {
       !std::equal(found->second.ranges.begin(), found->second.ranges.end(), mesh.ranges.begin(),
                   mesh.ranges.end(), same))
     changes_.instances = true;
+  note_change(id, found == meshes_.end() ? MeshChange{} : change_of(found->second, mesh));
   meshes_.insert_or_assign(id, std::move(mesh));
-  changes_.meshes.insert(id);
+}
+
+void Scene::note_change(Id id, MeshChange change) {
+  const auto [it, fresh] = changes_.meshes.try_emplace(id, std::move(change));
+  if (fresh) return;
+  // An earlier change is still waiting: what either touched is sent.
+  MeshChange& due = it->second;
+  join(due.positions, change.positions);
+  join(due.triangles, change.triangles);
+  join(due.corner_normals, change.corner_normals);
+  if (change.attributes.size() < due.attributes.size())
+    due.attributes.resize(change.attributes.size());
+  for (size_t i = 0; i < due.attributes.size(); ++i) join(due.attributes[i], change.attributes[i]);
 }
 
 void Scene::remove_mesh(Id id) {
   if (meshes_.erase(id)) {
-    changes_.meshes.insert(id);
+    changes_.meshes[id] = {};
     changes_.instances = true;
   }
 }
 
 void Scene::set_instances(std::vector<Instance> instances, std::vector<Id> material_table) {
+  for (const Instance& instance : instances)
+    if (instance.visibility & ~shared::SEEN_BY_ALL)
+      fail("an instance was handed over with visibility {}: only bits of {} have a meaning",
+           instance.visibility, shared::SEEN_BY_ALL);
   instances_ = std::move(instances);
   material_table_ = std::move(material_table);
   changes_.instances = true;
@@ -215,12 +265,26 @@ void Scene::remove_material(Id id) {
 
 void Scene::set_image(Id id, Image image) {
   check_id(id, "image");
+  image.serial = ++image_serial_;
   images_.insert_or_assign(id, std::move(image));
   changes_.images.insert(id);
 }
 
 void Scene::remove_image(Id id) {
   if (images_.erase(id)) changes_.images.insert(id);
+}
+
+const Image* Scene::image_with_pixels(Id id) {
+  const auto found = images_.find(id);
+  if (found == images_.end()) return nullptr;
+  Image& image = found->second;
+  if (image.levels.empty() && image.reload) image.levels = image.reload().levels;
+  return &image;
+}
+
+void Scene::release_pixels(Id id) {
+  const auto found = images_.find(id);
+  if (found != images_.end() && found->second.reload) found->second.levels.clear();
 }
 
 void Scene::set_lights(std::vector<Light> lights) {
@@ -239,8 +303,9 @@ void Scene::set_world(World world) {
 }
 
 const Mesh* Scene::mesh_of(const Instance& instance) const {
+  if (!instance.visibility || !finite(instance.object_to_world)) return nullptr;
   const auto mesh = meshes_.find(instance.mesh);
-  return mesh != meshes_.end() && finite(instance.object_to_world) ? &mesh->second : nullptr;
+  return mesh != meshes_.end() ? &mesh->second : nullptr;
 }
 
 Id Scene::material_of(const Instance& instance, int slot) const {

@@ -5,8 +5,10 @@
 // colours are scene-linear Rec.709. Ids are chosen by the caller and positive.
 #pragma once
 
+#include "base/runs.h"
 #include "scene/image.h"
 #include "scene/light.h"
+#include "scene/visibility_shared.h"
 
 #include <glm/glm.hpp>
 
@@ -85,6 +87,7 @@ struct Instance {
   Id mesh = 0;
   glm::mat4 object_to_world{1.0f};  // column-major, as GLM has it; not finite: draws nothing
   int material_offset = 0;          // in Scene::material_table, one entry a slot
+  uint32_t visibility = shared::SEEN_BY_ALL;  // SEEN_BY_... bits
 };
 
 struct TextureUse {
@@ -134,9 +137,23 @@ struct Facts {
   }
 };
 
+// What of an array has changed: all of it, or runs of elements while their number stayed.
+struct ArrayChange {
+  bool all = true;
+  std::vector<Run> runs;
+};
+
+struct MeshChange {
+  ArrayChange positions, triangles, corner_normals;
+  std::vector<ArrayChange> attributes;  // as in Mesh; those beyond its end have changed throughout
+  // True when the mesh may have to lie elsewhere in memory.
+  bool resized() const { return positions.all || triangles.all; }
+};
+
 // What has changed since the last take_changes().
 struct Changes {
-  std::set<Id> meshes, materials, material_params, images;  // set or removed
+  std::map<Id, MeshChange> meshes;                   // set or removed
+  std::set<Id> materials, material_params, images;  // set or removed
   std::set<uint32_t> instance_matrices;
   bool instances = false, lights = false, world = false;
   bool any() const {
@@ -149,7 +166,8 @@ class Scene {
  public:
   void set_mesh(Id id, Mesh mesh);
   void remove_mesh(Id id);
-  // Instances whose matrix is not finite are left out (a warning) until they get another.
+  // Instances whose matrix is not finite are left out (a warning) until they get another. Throws
+  // Error on visibility bits that there are not.
   void set_instances(std::vector<Instance> instances, std::vector<Id> material_table);
   void set_instance_matrices(std::span<const int> indices, std::span<const glm::mat4> matrices);
   void set_material(Id id, Material material);
@@ -157,6 +175,11 @@ class Scene {
   void remove_material(Id id);
   void set_image(Id id, Image image);
   void remove_image(Id id);
+  // The image with its pixels, made again if they were released; null when there is none. Throws
+  // Error when their source is gone.
+  const Image* image_with_pixels(Id id);
+  // Frees the pixels of an image that can be made again, which is no change of the scene.
+  void release_pixels(Id id);
   void set_lights(std::vector<Light> lights);
   void set_world(World world);
 
@@ -168,7 +191,8 @@ class Scene {
   const std::vector<Light>& lights() const { return lights_; }
   const World& world() const { return world_; }
 
-  // The mesh that an instance shows; null when there is none or its place is not finite.
+  // The mesh that an instance shows; null when there is none, no ray may meet it, or its place is
+  // not finite.
   const Mesh* mesh_of(const Instance& instance) const;
   // The material of a slot of an instance; 0 (the default grey) where none is set.
   Id material_of(const Instance& instance, int slot) const;
@@ -178,11 +202,14 @@ class Scene {
   Changes take_changes();
 
  private:
+  void note_change(Id id, MeshChange change);
+
   std::map<Id, Mesh> meshes_;
   std::vector<Instance> instances_;
   std::vector<Id> material_table_;
   std::map<Id, Material> materials_;
   std::map<Id, Image> images_;
+  int64_t image_serial_ = 0;
   std::vector<Light> lights_;
   World world_;
   Changes changes_;

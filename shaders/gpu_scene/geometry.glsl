@@ -2,12 +2,14 @@
 // Random reads through texelFetch are several times faster than through storage blocks on llvmpipe.
 #include "base/packing.glsl"
 #include "gpu_scene/view_shared.h"
+#include "scene/visibility_shared.h"
 
 layout(binding = 0) uniform samplerBuffer vertex_positions;    // object space, metres
 layout(binding = 1) uniform usamplerBuffer triangle_vertices;  // three indices into the mesh's own
 layout(binding = 2) uniform usamplerBuffer corner_normals;     // three packed units, object space
 layout(binding = 3) uniform samplerBuffer corner_attributes;   // pairs of floats
-layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh record}
+layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh
+                                                      // record, visibility, seed}
 layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute names of materials
 
 // Words of a mesh record in `tables`, then one word an attribute name: the first pair of floats and
@@ -15,7 +17,8 @@ layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute
 const int MESH_VERTEX_BASE = 0;
 const int MESH_TRIANGLE_BASE = 1;
 const int MESH_GENERATED = 2;  // six floats: scale and offset from object space to 0..1
-const int MESH_ATTRIBUTES = 8;
+const int MESH_SEED = 8;
+const int MESH_ATTRIBUTES = 9;
 const uint NO_ATTRIBUTE = 0xffffffffu;
 const uint IS_COLOR = 0x80000000u;  // two pairs a corner instead of one
 const int UV_DEFAULT = 0;
@@ -40,6 +43,17 @@ Transform fetch_transform(uint instance, vec3 world_origin) {
 
 int fetch_mesh_record(uint instance) {
   return int(floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).x));
+}
+
+// A number for drawing random ones: the same whatever the order of the scene's instances.
+uint fetch_seed(uint instance) {
+  vec4 bits = texelFetch(instances, int(instance) * 4 + 3);
+  return floatBitsToUint(bits.z) ^ table(int(floatBitsToUint(bits.x)) + MESH_SEED);
+}
+
+// SEEN_BY_CAMERA and its like.
+uint fetch_visibility(uint instance) {
+  return floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).y);
 }
 
 // The transpose of the inverse times the determinant: normals go through it whatever the scale,

@@ -22,7 +22,7 @@ void main() {
   float threshold = view.alpha.x;
   if (threshold < 0.0) {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
-    uint layer = hash(triangle + hash(drawn.y + hash(uint(view.size.w) + floatBitsToUint(view.alpha.y))));
+    uint layer = hash(triangle + hash(fetch_seed(drawn.y) + hash(uint(view.size.w) + floatBitsToUint(view.alpha.y))));
     threshold = unit_float(shuffled_radical_inverse(uint(view.size.z),
                                                     hash(pixel.x + hash(pixel.y + layer))));
   }

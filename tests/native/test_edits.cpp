@@ -3,6 +3,9 @@
 #include "still_life.h"
 #include "support.h"
 
+#include <algorithm>
+#include <random>
+
 namespace panoptes::test {
 namespace {
 
@@ -184,6 +187,114 @@ TEST_F(Edits, AnotherSlotTableIsShown) {
     scene.set_instances(life.scene.instances, table);
   });
   EXPECT_EQ(box_color().r, 0.75);
+}
+
+// --- many objects
+// ---------------------------------------------------------------------------------
+
+// A hundred boxes of four meshes and materials, some of which may discard fragments, some hidden
+// from the camera or from lamps.
+struct Crowd {
+  explicit Crowd(unsigned seed) : random(seed) {
+    for (int i = 0; i < 4; ++i) {
+      const float shade = 0.25f * float(i + 1);
+      scene.add_material(i % 2 ? alpha_card({shade, 0.5f, 1, 0.75f}) : lambert({shade, 1, 0.5f}));
+      scene.meshes.push_back(box({0, 0, 0}, glm::vec3(0.1f + 0.05f * float(i))).mesh());
+    }
+    scene.materials[3].attributes = {"uv"};
+    scene.lights = {sun({0.5f, 0.25f, -1}, 2)};
+    for (int i = 0; i < 100; ++i) add();
+  }
+  float number() { return float(random() % 1024) / 512 - 1; }
+  uint32_t pick(uint32_t count) { return uint32_t(random()) % count; }
+  void add() {
+    glm::mat4 place(1);
+    place[3] = glm::vec4(2 * number(), 2 * number(), number(), 1);
+    constexpr uint32_t kBits[4] = {shared::SEEN_BY_ALL, shared::SEEN_BY_ALL, shared::SEEN_BY_CAMERA,
+                                   shared::SEEN_BY_SHADOW};
+    scene.instances.insert(scene.instances.begin() + pick(uint32_t(scene.instances.size() + 1)),
+                           {Id(1 + pick(4)), place, int(pick(4)), kBits[pick(4)]});
+    scene.table = {1, 2, 3, 4};
+  }
+  void remove() {
+    scene.instances.erase(scene.instances.begin() + pick(uint32_t(scene.instances.size())));
+  }
+
+  TestScene scene;
+  std::mt19937 random;
+};
+
+TEST(EditsOfMany, GiveThePictureOfAFreshScene) {
+  Crowd crowd(3);
+  engine::RenderRequest r = request(perspective({0, -6, 4}, {0, 0, 0}, 0.6, 40, 40),
+                                    {Pass::kDiffCol, Pass::kDiffDir, Pass::kDepth}, 2);
+  render(crowd.scene, r);
+  for (int step = 0; step < 12; ++step) {
+    for (uint32_t edits = crowd.pick(6); edits > 0; --edits) {
+      crowd.add();
+      if (crowd.pick(2)) crowd.remove();
+      if (crowd.pick(2)) crowd.remove();
+    }
+    if (step % 3 == 0) crowd.scene.materials[0] = lambert({crowd.number(), 0.5f, 0});
+    if (step % 4 == 1) {
+      // One more name in every mesh's record, until they are too small for it.
+      crowd.scene.materials[1].attributes.push_back(fmt::format("name {}", step));
+      for (int i = 0; i < 4; ++i)
+        crowd.scene.materials[2].attributes.push_back(fmt::format("other {} {}", step, i));
+    }
+    if (step % 4 == 2) crowd.scene.meshes[2] = sphere({0, 0, 0}, 0.2f, 4 + step).mesh();
+    if (step % 5 == 4)
+      std::erase_if(crowd.scene.instances, [](const scene::Instance& i) {
+        return i.material_offset == 2;  // nobody uses this material now
+      });
+    shared_engine().edit([&](scene::Scene& scene) {
+      for (size_t i = 0; i < 4; ++i) scene.set_mesh(Id(i + 1), crowd.scene.meshes[i]);
+      for (size_t i = 0; i < 4; ++i) scene.set_material(Id(i + 1), crowd.scene.materials[i]);
+      scene.set_instances(crowd.scene.instances, crowd.scene.table);
+    });
+    const Picture edited = render(r);
+    render(TestScene{}, r);  // nothing keeps its place
+    const Picture fresh = render(crowd.scene, r);
+    // Random thresholds depend on what an object is and where, not on when it came.
+    for (Pass pass : {Pass::kCombined, Pass::kDiffCol, Pass::kDiffDir, Pass::kDepth})
+      ASSERT_EQ(edited[pass], fresh[pass]) << "step " << step;
+  }
+}
+
+TEST(EditsOfMany, OfOneObjectUploadWhatIsItsOwn) {
+  Crowd crowd(7);
+  const engine::RenderRequest r =
+      request(perspective({0, -6, 4}, {0, 0, 0}, 0.6, 16, 16), {Pass::kDiffCol});
+  render(crowd.scene, r);
+  const auto sent = [&](auto edit) {
+    const int64_t before = gl::counters().uploaded_bytes;
+    shared_engine().edit(edit);
+    render(r);
+    return gl::counters().uploaded_bytes - before;
+  };
+  const auto list = [&](scene::Scene& scene) {
+    scene.set_instances(crowd.scene.instances, crowd.scene.table);
+  };
+  const auto lamp = [&](scene::Scene& scene) { scene.set_lights({sun({0.5f, 0.25f, -1}, 3)}); };
+  sent(lamp);
+  const int64_t frame = sent(lamp);  // with the lamps' maps drawn again
+  EXPECT_EQ(sent(list), frame) << "the same list";
+  // Equal bytes between two edited places are sent along up to kGap.
+  constexpr int64_t kInstance = 64, kDraw = 36, kGap = 256;
+  std::reverse(crowd.scene.instances.begin(), crowd.scene.instances.end());
+  EXPECT_EQ(sent(list), frame) << "the same in another order";
+  int64_t all = 0;
+  for (int i = 0; i < 20; ++i) {
+    crowd.add();
+    all += sent(list) - frame;
+  }
+  // Now and then a list moves to where it has room.
+  EXPECT_LE(all, 20 * 2 * (kInstance + kDraw));
+  for (int i = 0; i < 20; ++i) {
+    crowd.remove();
+    // The last instance and the last draw fill the holes.
+    EXPECT_LE(sent(list) - frame, kInstance + 2 * kDraw + kGap);
+  }
 }
 
 TEST_F(Edits, SettingsOfTheFrameDoNotStick) {

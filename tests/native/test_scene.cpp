@@ -36,7 +36,9 @@ class SceneChanges : public ::testing::Test {
     bool instances = false, lights = false, world = false;
   };
   static void expect(const scene::Changes& c, const Expected& e) {
-    EXPECT_EQ(c.meshes, e.meshes);
+    std::set<Id> meshes;
+    for (const auto& [id, change] : c.meshes) meshes.insert(id);
+    EXPECT_EQ(meshes, e.meshes);
     EXPECT_EQ(c.materials, e.materials);
     EXPECT_EQ(c.material_params, e.material_params);
     EXPECT_EQ(c.images, e.images);
@@ -52,6 +54,42 @@ class SceneChanges : public ::testing::Test {
 
 TEST_F(SceneChanges, AMovedVertexTouchesItsMeshAlone) {
   expect(of([&] { scene.set_mesh(7, floor_at(2, 1).mesh()); }), {.meshes = {7}});
+}
+
+TEST_F(SceneChanges, AnEditedMeshTellsWhatOfItDiffers) {
+  const auto change_of = [&](auto edit) { return of(edit).meshes.at(7); };
+  scene::Mesh moved = floor_at(0, 1).mesh();
+  moved.positions[2].z = 1;
+  scene::MeshChange c = change_of([&] { scene.set_mesh(7, moved); });
+  EXPECT_EQ(c.positions.runs, (std::vector<panoptes::Run>{{2, 1}}));
+  EXPECT_TRUE(c.triangles.runs.empty() && c.corner_normals.runs.empty());
+  EXPECT_TRUE(c.attributes.at(0).runs.empty());
+  EXPECT_FALSE(c.resized() || c.corner_normals.all || c.attributes[0].all);
+  scene::Mesh mapped = moved;
+  mapped.attributes[0].values[7] = 0.25f;  // the second value of the fourth corner
+  c = change_of([&] { scene.set_mesh(7, mapped); });
+  EXPECT_EQ(c.attributes.at(0).runs, (std::vector<panoptes::Run>{{3, 1}}));
+  EXPECT_TRUE(c.positions.runs.empty());
+  // Two edits before a frame: what either touched.
+  c = change_of([&] {
+    moved.positions[0].x = 3;
+    scene.set_mesh(7, moved);
+    scene.set_mesh(7, mapped);
+  });
+  EXPECT_EQ(c.positions.runs, (std::vector<panoptes::Run>{{0, 1}}));
+  EXPECT_EQ(c.attributes.at(0).runs, (std::vector<panoptes::Run>{{3, 1}}));
+  // Another size, or a mesh that was away meanwhile, is all new.
+  c = change_of([&] {
+    scene.set_mesh(7, moved);
+    scene.set_mesh(7, box({0, 0, 0}, glm::vec3(1)).mesh());
+  });
+  EXPECT_TRUE(c.positions.all && c.triangles.all && c.resized());
+  c = change_of([&] {
+    const scene::Mesh held = scene.meshes().at(7);
+    scene.remove_mesh(7);
+    scene.set_mesh(7, held);
+  });
+  EXPECT_TRUE(c.positions.all && c.triangles.all);
 }
 
 TEST_F(SceneChanges, NewRangesTouchTheDrawsToo) {
@@ -226,7 +264,10 @@ TEST(SceneFacts, CountLampsAndTheWorld) {
 TEST(MakeImage, PremultipliesStraightColoursInTheirCodes) {
   const uint8_t rgba[8] = {128, 64, 255, 64, 255, 0, 7, 255};
   const auto bytes = [&](bool srgb, scene::AlphaMode mode) {
-    return scene::make_image("i", 2, 1, std::span<const uint8_t>(rgba), srgb, mode).bytes;
+    const scene::Image image =
+        scene::make_image("i", 2, 1, std::span<const uint8_t>(rgba), srgb, mode);
+    const std::span<const uint8_t> stored = image.pixels<uint8_t>();
+    return std::vector<uint8_t>(stored.begin(), stored.end());
   };
   using Bytes = std::vector<uint8_t>;
   EXPECT_EQ(bytes(true, scene::AlphaMode::kStraight), (Bytes{32, 16, 64, 64, 255, 0, 7, 255}));
@@ -240,8 +281,9 @@ TEST(MakeImage, KeepsFloatsFinite) {
   const float rgba[4] = {kNaN, 2, std::numeric_limits<float>::infinity(), 0.5f};
   const scene::Image image =
       scene::make_image("i", 1, 1, std::span<const float>(rgba), true, scene::AlphaMode::kStraight);
-  EXPECT_EQ(image.floats, (std::vector<float>{0, 1, 0, 0.5f}));
-  EXPECT_TRUE(image.is_float());
+  const std::span<const float> stored = image.pixels<float>();
+  EXPECT_EQ(std::vector<float>(stored.begin(), stored.end()),
+            (std::vector<float>{0, 1, 0, 0.5f}));
 }
 
 TEST(MakeImage, RefusesSizesThatDoNotFit) {

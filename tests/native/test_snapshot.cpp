@@ -36,6 +36,7 @@ class Snapshot : public ::testing::Test {
     setup.materials[0].textures = {{a, true, scene::TextureUse::Extension::kClip}};
     setup.materials[0].attributes = {"uv", "color"};
     setup.add_object(g, {1, 2}, glm::mat4(3.0f));
+    setup.instances[0].visibility = shared::SEEN_BY_SHADOW;
     setup.lights = {sun({0, 0, -1}, 3),
                     area({0, 0, 1}, {0, 0, -1}, 5, scene::AreaShape::kEllipse, 2, 3)};
     setup.lights[1].cast_shadow = false;
@@ -109,8 +110,15 @@ TEST_F(Snapshot, GivesTheSameSceneAndRequestBack) {
     EXPECT_EQ(i.width, image.width);
     EXPECT_EQ(i.height, image.height);
     EXPECT_EQ(i.srgb, image.srgb);
-    EXPECT_EQ(i.bytes, image.bytes);
-    EXPECT_EQ(i.floats, image.floats);
+    EXPECT_EQ(i.type, image.type);
+    EXPECT_EQ(i.channels, image.channels);
+    ASSERT_EQ(i.levels.size(), image.levels.size());
+    for (size_t level = 0; level < i.levels.size(); ++level) {
+      const size_t bytes = size_t(i.levels[level].width) * size_t(i.levels[level].height) *
+                           i.texel_bytes();
+      EXPECT_EQ(std::memcmp(i.levels[level].pixels.get(), image.levels[level].pixels.get(), bytes),
+                0);
+    }
   }
   ASSERT_EQ(again.materials().size(), 2u);
   for (const auto& [id, material] : scene.materials()) {
@@ -131,6 +139,7 @@ TEST_F(Snapshot, GivesTheSameSceneAndRequestBack) {
   ASSERT_EQ(again.instances().size(), 1u);
   EXPECT_EQ(again.instances()[0].object_to_world, scene.instances()[0].object_to_world);
   EXPECT_EQ(again.instances()[0].mesh, scene.instances()[0].mesh);
+  EXPECT_EQ(again.instances()[0].visibility, shared::SEEN_BY_SHADOW);
   EXPECT_EQ(again.material_table(), scene.material_table());
   ASSERT_EQ(again.lights().size(), 2u);
   for (size_t i = 0; i < 2; ++i) {

@@ -9,6 +9,9 @@ import zlib
 
 import numpy as np
 
+# Camera, diffuse, glossy, transmission, volume scatter and shadow rays.
+SEEN_BY_ALL = 63
+
 
 def fingerprint(*arrays):
     """Return a hashable summary of arrays' shapes and bits."""
@@ -111,19 +114,25 @@ class Mirror:
             self.engine.set_lights(lights)
             self._lights = mark
 
-    def put_instances(self, mesh_ids, matrices, offsets, table):
-        """Send instances: all of them if the list changed, else only matrices that did."""
+    def put_instances(self, mesh_ids, matrices, offsets, table, visibility=None):
+        """Send instances: all of them if the list changed, else only matrices that did.
+
+        `visibility` is uint8[N] of the bits in shaders/scene/visibility_shared.h; None means that
+        every ray meets every instance.
+        """
+        if visibility is None:
+            visibility = np.full(len(mesh_ids), SEEN_BY_ALL, np.uint8)
+        rest = (mesh_ids, offsets, table, visibility)
         held = self._instances
-        same_list = (held is not None and np.array_equal(held[0], mesh_ids)
-                     and np.array_equal(held[2], offsets) and np.array_equal(held[3], table))
+        same_list = held is not None and all(map(np.array_equal, held[0], rest))
         self._instances = None
         if not same_list:
-            self.engine.set_instances(mesh_ids, matrices, offsets, table)
+            self.engine.set_instances(mesh_ids, matrices, offsets, table, visibility)
         else:
             moved = np.flatnonzero((held[1] != matrices).any(axis=(1, 2))).astype(np.int32)
             if len(moved):
                 self.engine.set_instance_matrices(moved, np.ascontiguousarray(matrices[moved]))
-        self._instances = (mesh_ids, matrices, offsets, table)
+        self._instances = (rest, matrices)
 
     def keep_only(self, meshes, materials, images):
         """Remove whatever is not in these sets of ids."""

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the benchmarks share: both engines set alike, one render measured, a process for each engine."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+ROOT = Path(__file__).resolve().parents[2]
+ENGINES = ("CYCLES", "PANOPTES")
+# The slowest scene at hand takes seconds; this only ends what hangs.
+TIME_LIMIT_SECONDS = 900
+
+
+def own_arguments():
+    """The arguments behind Blender's own."""
+    return sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+
+
+def register(engine):
+    """Makes an engine known to Blender."""
+    if engine == "PANOPTES":
+        sys.path.insert(0, str(ROOT / "addon"))
+        import panoptes
+        panoptes.register()
+
+
+def choose(scene, engine, size, samples=1):
+    """Sets what both have to render: `size` pixels, nothing behind it; Cycles always takes one sample."""
+    render = scene.render
+    render.engine = engine
+    render.resolution_x, render.resolution_y = size
+    render.resolution_percentage = 100
+    render.use_compositing = render.use_sequencer = render.use_persistent_data = False
+    if engine == "CYCLES":
+        scene.cycles.device, scene.cycles.samples = "CPU", 1
+        scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+    else:
+        scene.panoptes.method, scene.panoptes.samples = "realtime", samples
+
+
+def measure(scene):
+    """Seconds of one render, by the clock and of the processor."""
+    began, used = time.perf_counter(), time.process_time()
+    bpy.ops.render.render()
+    seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
+    stats = json.loads(scene.panoptes.last_stats) if scene.render.engine == "PANOPTES" and scene.panoptes.last_stats else {}
+    return {"seconds": seconds, "cpu_seconds": cpu_seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms") if key in stats}}
+
+
+def report(found):
+    """Hands a child's measurements to its parent."""
+    print("measured:", json.dumps(found), flush=True)
+
+
+def child(script, engine, arguments):
+    """Runs `script` in a process of its own with --child; returns what it reports. Leaves with a sentence where it fails."""
+    command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "-P", script, "--",
+               "--child", engine, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT_SECONDS)
+    for line in done.stdout.splitlines():
+        if line.startswith("measured:"):
+            return json.loads(line.removeprefix("measured:"))
+    tail = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()][-8:]
+    sys.exit(f"{engine} did not render (status {done.returncode}):\n" + "\n".join(tail))
+
+
+def in_turns(repeat):
+    """Engines in the order in which they run: taking turns spreads whatever else the machine does over both."""
+    for turn in range(repeat):
+        yield from ENGINES if turn % 2 == 0 else reversed(ENGINES)

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Each kind of edit uploads what it touched and no more: from bpy through the add-on's sync to the GPU.
+
+What a frame uploads whatever was edited (views, placed lamps) is measured first and taken
+off. Bounds are sizes, in bytes, of what native/gpu_scene keeps of each thing.
+"""
+
+import bpy
+import numpy as np
+import pytest
+
+from building import Sync, add_object, quad
+from panoptes import native, requests
+
+OBJECTS = 1000
+SIDE = 64
+VEC4 = 16
+# An instance, and one of its draws (record and command).
+INSTANCE, DRAW = 64, 16 + 20
+# A mesh's record in the tables, with its bounds and a word for each attribute name.
+MESH_RECORD = (9 + 8) * 4
+POSITION, TRIANGLE, UV_CORNER = 12, 12 + 12, 8
+# What views and one lamp may cost a frame, whatever was edited: some blocks of a few hundred bytes.
+FRAME = 4096
+# Equal bytes between two edited places are sent along up to these distances: tables, geometry.
+GAP, MESH_GAP = 256, 64 * 12
+
+
+class Uploads:
+    """A scene that is shown; `of` tells what an edit of it costs."""
+
+    def __init__(self, scene, engine):
+        self.scene = scene
+        self.engine = engine
+        self.sync = Sync(self)
+        self.frame = None
+        # The first frame holds everything; the second is what any frame costs.
+        self._render()
+        self._render()
+        self.frame = self._render()
+        # What lamps see anew is drawn into their maps, whose views are sent.
+        def edit():
+            bpy.data.lights['Lamp'].energy = 2.0
+        self.relit, _ = self.of(edit)
+
+    def __getattr__(self, name):
+        return getattr(self.engine, name)
+
+    def clear(self):
+        """Satisfy `Sync`, which counts calls when its engine is a recorder."""
+
+    def names(self):
+        """Satisfy `Sync`."""
+
+    def _render(self, frame=None):
+        self.sync.run(frame)
+        before = self.engine.counters()
+        request = requests.final(bpy.context.evaluated_depsgraph_get(), ('Combined',), pytest.fail)
+        job = self.engine.render(request)
+        while not job.wait(1.0):
+            pass
+        job.finish()
+        after = self.engine.counters()
+        return {name: after[name] - before[name] for name in after}
+
+    def of(self, edit, frame=None):
+        """Return (bytes beyond any frame's, programs compiled) of an edit."""
+        edit()
+        cost = self._render(frame)
+        return cost['uploaded_bytes'] - self.frame['uploaded_bytes'], cost['programs']
+
+
+def assert_sent(uploads, edit, due, programs=0, frame=None):
+    """An edit that lamps see sends something, and no more than `due` bytes and the lamps' views."""
+    sent, compiled = uploads.of(edit, frame)
+    assert 0 < sent - uploads.relit <= due
+    assert compiled == programs
+
+
+def material(name, color):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    principled(made).inputs['Base Color'].default_value = (*color, 1.0)
+    return made
+
+
+def principled(of_material):
+    return next(n for n in of_material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED')
+
+
+def grid(name, side=SIDE):
+    """A mesh of side * side quads with a UV map."""
+    steps = np.linspace(-1.0, 1.0, side + 1)
+    x, y = np.meshgrid(steps, steps)
+    corners = np.stack([x, y, np.zeros_like(x)], -1).reshape(-1, 3)
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).reshape(-1, 1)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(corners.tolist(), [], (first + [0, 1, side + 2, side + 1]).tolist())
+    mesh.uv_layers.new(name='UVMap')
+    mesh.update()
+    return mesh
+
+
+@pytest.fixture
+def uploads(scene, native_module):
+    native.use_factory(None)
+    scene.render.resolution_x, scene.render.resolution_y = 16, 12
+    scene.panoptes.realtime.shadow_resolution = 64
+    scene.camera.location = (0.0, 0.0, 30.0)
+    red, green = material('Red', (1, 0, 0)), material('Green', (0, 1, 0))
+    tile = quad('Tile')
+    tile.materials.append(red)
+    for i in range(OBJECTS):
+        add_object(tile, f'Tile {i}', location=(i % 40 - 20, i // 40 - 12, 0))
+    ground = grid('Ground')
+    ground.materials.append(green)
+    add_object(ground, 'Ground', location=(0, 0, -1), scale=(20, 20, 1))
+    light = bpy.data.lights.new('Lamp', 'SUN')
+    light.angle = 0.0  # without a penumbra its map is kept until something changes
+    add_object(light, 'Lamp', location=(0, 0, 5))
+    scene.world = bpy.data.worlds.new('World')
+    scene.world.use_nodes = True
+    bpy.context.view_layer.update()
+    return Uploads(scene, native.engine())
+
+
+class TestFrames:
+    """What is paid without an edit."""
+
+    def test_a_frame_sends_its_views_and_lamps(self, uploads):
+        assert uploads.frame['uploaded_bytes'] + uploads.relit <= FRAME
+        for name in ('programs', 'buffers', 'textures', 'memory_bytes'):
+            assert uploads.frame[name] == 0, name
+
+    def test_nothing_edited(self, uploads):
+        assert uploads.of(lambda: None) == (0, 0)
+
+    def test_camera(self, uploads):
+        def edit():
+            uploads.scene.camera.location.x = 1.0
+        assert uploads.of(edit) == (0, 0)
+
+
+class TestObjects:
+    """One of a thousand."""
+
+    def test_transform(self, uploads):
+        def edit():
+            bpy.data.objects['Tile 7'].rotation_euler = (0.5, 0.25, 0.125)
+        assert_sent(uploads, edit, INSTANCE)
+
+    def test_frame_change(self, uploads):
+        def animate():
+            for frame in (1, 10):
+                bpy.data.objects['Tile 9'].location.z = frame / 10
+                bpy.data.objects['Tile 9'].keyframe_insert('location', frame=frame)
+        uploads.of(animate)
+        assert_sent(uploads, lambda: None, INSTANCE, frame=5)
+
+    def test_hide_and_show(self, uploads):
+        for hidden in (True, False):
+            def edit():
+                bpy.data.objects['Tile 3'].hide_viewport = hidden
+            # The last one fills the hole, or the shown one comes last.
+            assert_sent(uploads, edit, INSTANCE + 2 * DRAW + GAP)
+
+    def test_ray_visibility(self, uploads):
+        def edit():
+            bpy.data.objects['Tile 4'].visible_shadow = False
+        cost, programs = uploads.of(edit)
+        assert programs == 0 and cost <= uploads.relit + INSTANCE + 3 * DRAW
+
+    def test_add(self, uploads):
+        def edit():
+            mesh = quad('New')
+            mesh.materials.append(bpy.data.materials['Green'])
+            add_object(mesh, 'A new one', location=(3, 3, 2))
+        assert_sent(uploads, edit, 4 * POSITION + 2 * TRIANGLE + MESH_RECORD + INSTANCE + DRAW)
+
+    def test_add_with_a_material(self, uploads):
+        def edit():
+            mesh = quad('New')
+            mesh.materials.append(material('Blue', (0, 0, 1)))
+            add_object(mesh, 'A new one', location=(3, 3, 2))
+        # The same code as the other materials': no program either.
+        assert_sent(uploads, edit, 4 * POSITION + 2 * TRIANGLE + MESH_RECORD + INSTANCE + DRAW
+                    + 8 * VEC4)
+
+    def test_duplicate(self, uploads):
+        def edit():
+            add_object(bpy.data.meshes['Tile'], 'A twin', location=(3, 3, 2))
+        assert_sent(uploads, edit, INSTANCE + DRAW)
+
+    def test_delete(self, uploads):
+        def edit():
+            bpy.data.objects.remove(bpy.data.objects['Tile 5'])
+        assert_sent(uploads, edit, INSTANCE + 2 * DRAW + GAP)
+
+    def test_undo(self, uploads):
+        bpy.ops.ed.undo_push(message='before')
+        bpy.data.objects['Tile 7'].location.z = 0.5
+        bpy.ops.ed.undo_push(message='moved')
+        uploads.of(lambda: None)
+        assert_sent(uploads, bpy.ops.ed.undo, INSTANCE)
+
+
+class TestMeshes:
+    """A mesh of thousands of triangles beside a thousand others."""
+
+    def test_one_vertex(self, uploads):
+        def edit():
+            mesh = bpy.data.meshes['Ground']
+            mesh.vertices[100].co.z = 0.1
+            mesh.update()
+        # It, the normals of the four faces around it (two rows of two), and the mesh's bounds.
+        assert_sent(uploads, edit, POSITION + 2 * (4 * 12) + MESH_GAP + MESH_RECORD)
+
+    def test_all_vertices(self, uploads):
+        def edit():
+            mesh = bpy.data.meshes['Ground']
+            for vertex in mesh.vertices:
+                vertex.co.z = vertex.co.x ** 2
+            mesh.update()
+        # Positions and normals; neither indices nor texture coordinates.
+        assert_sent(uploads, edit, (SIDE + 1) ** 2 * POSITION + SIDE ** 2 * 2 * 12 + MESH_RECORD)
+
+    def test_topology(self, uploads):
+        side = SIDE - 1
+        def edit():
+            old = bpy.data.meshes['Ground']
+            bpy.data.objects['Ground'].data = grid('Smaller', side)
+            bpy.data.objects['Ground'].data.materials.append(bpy.data.materials['Green'])
+            bpy.data.meshes.remove(old)
+        triangles = side ** 2 * 2
+        assert_sent(uploads, edit, (side + 1) ** 2 * POSITION
+                    + triangles * (TRIANGLE + 3 * UV_CORNER) + MESH_RECORD + INSTANCE + DRAW)
+
+
+class TestShading:
+    """Materials, lamps and the world."""
+
+    def test_material_value(self, uploads):
+        def edit():
+            color = principled(bpy.data.materials['Red']).inputs['Base Color']
+            color.default_value = (0.5, 0.25, 0.125, 1.0)
+        assert_sent(uploads, edit, VEC4)
+
+    def test_node_link(self, uploads):
+        def edit():
+            tree = bpy.data.materials['Green'].node_tree
+            node = tree.nodes.new('ShaderNodeTexCoord')
+            color = principled(bpy.data.materials['Green']).inputs['Base Color']
+            tree.links.new(node.outputs['UV'], color)
+        # Its parameters; one program, that of its surfaces.
+        assert_sent(uploads, edit, 8 * VEC4, programs=1)
+
+    def test_lamp(self, uploads):
+        def edit():
+            bpy.data.lights['Lamp'].energy = 3.0
+        assert uploads.of(edit) == (uploads.relit, 0)
+
+    def test_world_colour(self, uploads):
+        def edit():
+            tree = uploads.scene.world.node_tree
+            node = next(n for n in tree.nodes if n.type == 'BACKGROUND')
+            node.inputs['Color'].default_value = (0.5, 0.0, 1.0, 1.0)
+        # Its parameters, and nine coefficients of its light.
+        assert_sent(uploads, edit, 2 * VEC4 + 9 * VEC4)
