@@ -63,6 +63,9 @@ class GpuScene {
   // The same for the world alone.
   int64_t world_revision() const { return world_revision_; }
 
+  // Where the GPU holds the scene's instance number `index`, which has to be one that is drawn.
+  uint32_t place_of(size_t index) const { return instances_.place_of(index); }
+
   // The defines and snippets that the generated code of a material (or the world) needs.
   static void add_material(const GpuMaterial& material, gl::ProgramSource& source);
   static void add_world(const GpuShading& world, gl::ProgramSource& source);

@@ -108,7 +108,7 @@ std::vector<shared::EmitterRadiance> EmitterLights::radiances(const std::vector<
   for (const auto& [id, indices] : by_material)
     for (size_t i : indices) {
       const scene::EmitterPoint& p = draws[i].point;
-      places.push_back({p.instance, p.triangle, p.barycentrics.x, p.barycentrics.y});
+      places.push_back({gpu.scene.place_of(p.instance), p.triangle, p.barycentrics.x, p.barycentrics.y});
     }
   const gl::Buffer input{std::span<const shared::EmitterPlace>(places)};
   const gl::Buffer output(int64_t(places.size() * sizeof(shared::EmitterRadiance)));

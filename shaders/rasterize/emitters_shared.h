@@ -6,7 +6,7 @@
 SHARED_BEGIN
 
 struct EmitterPlace {
-  uint instance;
+  uint instance;  // its place on the GPU
   uint triangle;  // in the mesh
   float u, v;     // barycentric coordinates of the second and third vertex
 };

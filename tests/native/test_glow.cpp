@@ -152,6 +152,15 @@ TEST(Glow, ManyEmittersShareTheirPoints) {
       0.03);
 }
 
+TEST(Glow, DoesNotDependOnTheOrderOfInstances) {
+  // Known objects keep their places on the GPU when the list is sent in another order.
+  TestScene s = glowing(Plate{});
+  s.add_object(quad({-2.5f, 0, 2}, {0.3f, 0, 0.3f}, {0, 0.3f, 0}), {s.add_material(emitter({5, 1, 2}))});
+  const Picture first = render(s, many(4));
+  std::swap(s.instances.front(), s.instances.back());
+  EXPECT_EQ(render(s, many(4))[Pass::kDiffDir], first[Pass::kDiffDir]);
+}
+
 TEST(Glow, BlackEmittersCostNoShadowMaps) {
   const Picture picture = render(glowing(Plate{}, glm::vec3(0)), many(2));
   for (float value : picture[Pass::kDiffDir]) EXPECT_EQ(value, 0);
