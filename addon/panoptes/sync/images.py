@@ -83,8 +83,12 @@ class ImageSender:
             try:
                 future.result()
             except RuntimeError:
-                # The decoder does not know the format, or the file is damaged.
-                self._send_pixels(image_id, image, path, settings, owner)
+                # The decoder does not know the format, or the file is damaged. OpenEXR is known, and
+                # Blender 3.4 hangs on such files that are cut off: it is not asked.
+                if path.lower().endswith('.exr'):
+                    self._send_missing(image_id, image, path, owner)
+                else:
+                    self._send_pixels(image_id, image, path, settings, owner)
             else:
                 self._mirror.note_image(image_id, mark)
         self._decoding = []
@@ -130,7 +134,10 @@ class ImageSender:
         image.pixels.foreach_get(pixels.reshape(-1))
         if image.channels != 4:
             pixels = _four_channels(pixels)
-        if image.is_float:
+        if not image.is_float:
+            # Blender holds bytes and hands out floats.
+            pixels = np.rint(pixels * 255.0).astype(np.uint8)
+        else:
             # Blender turned them scene-linear and premultiplied when it loaded them.
             settings = (False, 'PREMUL' if settings[1] != 'CHANNEL_PACKED' else settings[1])
         mark = ('pixels', pixels.shape, zlib.crc32(pixels.reshape(-1).view(np.uint8)), settings)
