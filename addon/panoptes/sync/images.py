@@ -83,12 +83,8 @@ class ImageSender:
             try:
                 future.result()
             except RuntimeError:
-                # The decoder does not know the format, or the file is damaged. OpenEXR is known, and
-                # Blender 3.4 hangs on such files that are cut off: it is not asked.
-                if path.lower().endswith('.exr'):
-                    self._send_missing(image_id, image, path, owner)
-                else:
-                    self._send_pixels(image_id, image, path, settings, owner)
+                # The decoder does not know the format, or the file is damaged.
+                self._send_pixels(image_id, image, path, settings, owner)
             else:
                 self._mirror.note_image(image_id, mark)
         self._decoding = []
