@@ -86,7 +86,13 @@ Image new_image(std::string name, int width, int height, PixelType type, int cha
   if (width < 1 || height < 1)
     fail("image '{}' has no pixels or a broken size ({}x{}): reload it or replace it", name, width,
          height);
-  Image image{std::move(name), width, height, type, channels, srgb, {}, {}};
+  Image image;
+  image.name = std::move(name);
+  image.width = width;
+  image.height = height;
+  image.type = type;
+  image.channels = channels;
+  image.srgb = srgb;
   try {
     image.levels = {{width, height, std::make_shared_for_overwrite<std::byte[]>(image.bytes())}};
   } catch (const std::bad_alloc&) {

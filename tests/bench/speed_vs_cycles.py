@@ -22,18 +22,16 @@ The bar (wall, "first" row) is 2 on Sponza at 960x540: twice Cycles' time to syn
 import argparse
 import json
 import statistics
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import bpy
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).parent))
+import engines  # noqa: E402
+from engines import ENGINES, ROOT  # noqa: E402
+
 ROWS = ("first", "opened", "again")
-ENGINES = ("CYCLES", "PANOPTES")
-# The slowest scene at hand takes seconds; this only ends what hangs.
-TIME_LIMIT_SECONDS = 900
 
 
 def parse_options():
@@ -44,8 +42,7 @@ def parse_options():
     parser.add_argument("--samples", type=int, default=1, help="of Panoptes; Cycles always takes one")
     parser.add_argument("--json", action="store_true", help="print every measurement as JSON")
     parser.add_argument("--child", choices=ENGINES, help=argparse.SUPPRESS)
-    arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    options = parser.parse_args(arguments)
+    options = parser.parse_args(engines.own_arguments())
     try:
         options.width, options.height = (int(part) for part in options.size.lower().split("x"))
     except ValueError:
@@ -66,52 +63,20 @@ def prepare(options):
     """Opens the scene and sets what is measured."""
     bpy.ops.wm.open_mainfile(filepath=options.scene)
     scene = bpy.context.scene
-    render = scene.render
-    render.engine = options.child
-    render.resolution_x, render.resolution_y, render.resolution_percentage = options.width, options.height, 100
-    render.use_compositing = render.use_sequencer = render.use_persistent_data = False
-    if options.child == "CYCLES":
-        scene.cycles.device, scene.cycles.samples = "CPU", 1
-        scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
-    else:
-        scene.panoptes.method, scene.panoptes.samples = "realtime", options.samples
+    engines.choose(scene, options.child, (options.width, options.height), options.samples)
     return scene
-
-
-def measure(scene):
-    """Seconds of one render, by the clock and of the processor."""
-    began, used = time.perf_counter(), time.process_time()
-    bpy.ops.render.render()
-    seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
-    stats = json.loads(scene.panoptes.last_stats) if scene.render.engine == "PANOPTES" and scene.panoptes.last_stats else {}
-    return {"seconds": seconds, "cpu_seconds": cpu_seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms") if key in stats}}
 
 
 def run_child(options):
     """Renders thrice and prints the measurements on one line."""
-    sys.path.insert(0, str(ROOT / "addon"))
-    if options.child == "PANOPTES":
-        import panoptes
-        panoptes.register()
-    found = {"first": measure(prepare(options))}
+    engines.register(options.child)
+    found = {"first": engines.measure(prepare(options))}
     scene = prepare(options)
-    found["opened"], found["again"] = measure(scene), measure(scene)
-    print("measured:", json.dumps(found), flush=True)
+    found["opened"], found["again"] = engines.measure(scene), engines.measure(scene)
+    engines.report(found)
 
 
 # --- the run --------------------------------------------------------------------------------------------
-
-
-def child(engine, options):
-    """One process of an engine; returns its measurements. Leaves with a sentence where it fails."""
-    command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "-P", __file__, "--",
-               "--child", engine, "--size", options.size, "--scene", options.scene, "--samples", str(options.samples)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=TIME_LIMIT_SECONDS)
-    for line in done.stdout.splitlines():
-        if line.startswith("measured:"):
-            return json.loads(line.removeprefix("measured:"))
-    tail = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()][-8:]
-    sys.exit(f"{engine} did not render {options.scene} (status {done.returncode}):\n" + "\n".join(tail))
 
 
 def main():
@@ -120,10 +85,9 @@ def main():
         run_child(options)
         return
     runs = {engine: [] for engine in ENGINES}
-    for turn in range(options.repeat):
-        # Taking turns spreads whatever else the machine does over both.
-        for engine in ENGINES if turn % 2 == 0 else reversed(ENGINES):
-            runs[engine].append(child(engine, options))
+    arguments = ["--size", options.size, "--scene", options.scene, "--samples", str(options.samples)]
+    for engine in engines.in_turns(options.repeat):
+        runs[engine].append(engines.child(__file__, engine, arguments))
     medians = {kind: {row: {engine: statistics.median(run[row][kind] for run in runs[engine]) for engine in ENGINES}
                       for row in ROWS} for kind in ("seconds", "cpu_seconds")}
     ratios = {kind: {row: found["PANOPTES"] / found["CYCLES"] for row, found in rows.items()} for kind, rows in medians.items()}

@@ -43,9 +43,18 @@ class TestImages:
         self.textured(image)
         sync.run()
         ((_, name, pixels, srgb, alpha),) = sync.recorder.arguments('set_image_pixels')
-        assert name == 'Made' and pixels.shape == (2, 4, 4) and pixels.dtype == np.float32
+        assert name == 'Made' and pixels.shape == (2, 4, 4) and pixels.dtype == np.uint8
         assert srgb and alpha == 'STRAIGHT'
-        assert np.allclose(pixels[0, 0], (1, 0.5, 0, 1), atol=0.005)
+        assert pixels[0, 0].tolist() == [255, 128, 0, 255]
+
+    def test_generated_floats(self, sync):
+        image = bpy.data.images.new('Made', 2, 2, float_buffer=True)
+        image.pixels.foreach_set(np.tile(np.float32([7, 0.5, 0, 1]), 4))
+        self.textured(image)
+        sync.run()
+        ((_, _, pixels, srgb, _),) = sync.recorder.arguments('set_image_pixels')
+        assert pixels.dtype == np.float32 and pixels[0, 0].tolist() == [7, 0.5, 0, 1]
+        assert not srgb
 
     def test_file(self, sync, tmp_path):
         self.textured(self.saved(tmp_path))

@@ -1,8 +1,13 @@
 // Image textures as Cycles filters them: codes are filtered, then linearised.
 #include "gpu_scene/gpu_scene.h"
+#include "gl/counters.h"
 #include "support.h"
 
+#include <glm/gtc/packing.hpp>
+
+#include <array>
 #include <cmath>
+#include <thread>
 
 namespace panoptes::test {
 namespace {
@@ -187,12 +192,13 @@ TEST(Images, MissingOnesAreMagenta) {
   EXPECT_EQ(picture_of(s).rgb(Pass::kEmit, 16, 16), glm::dvec3(0.5, 0.25, 2));
 }
 
-TEST(Images, ThatAreTooLargeAreMagentaWithAWarning) {
+TEST(Images, ThatAreTooLargeAreScaledDownWithAWarning) {
   const int side = shared_engine().device().max_texture_size + 1;
-  TestScene s = shown(floats(side, 1, uniform({1, 1, 1, 1}, side)), show(false));
+  TestScene s = shown(floats(side, 1, uniform({1, 0.5f, 3, 1}, side)), show(false));
   s.images[0].name = "Panorama";
   Picture p = picture_of(s);
-  EXPECT_EQ(p.rgb(Pass::kEmit, 16, 16), glm::dvec3(1, 0, 1));
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(p.value(Pass::kEmit, 16, 16, c), (std::array{1.0, 0.5, 3.0})[size_t(c)], 1e-6);
   ASSERT_EQ(p.stats.warnings.size(), 1u);
   EXPECT_NE(p.stats.warnings[0].find("'Panorama'"), std::string::npos) << p.stats.warnings[0];
   // Replaced by a smaller one, the warning goes with it.
@@ -202,6 +208,105 @@ TEST(Images, ThatAreTooLargeAreMagentaWithAWarning) {
   p = render(request(kAbove, {Pass::kEmit}));
   EXPECT_EQ(p.rgb(Pass::kEmit, 16, 16), glm::dvec3(0.5, 0.25, 2));
   EXPECT_TRUE(p.stats.warnings.empty()) << p.stats.warnings[0];
+}
+
+// An image of one texel of any type, filled with the bits of `values`.
+template <class T>
+scene::Image texel(scene::PixelType type, const std::vector<T>& values, bool srgb = false) {
+  scene::Image image = scene::new_image("image", 1, 1, type, int(values.size()), srgb);
+  std::copy(values.begin(), values.end(), image.pixels<T>().begin());
+  scene::finish_image(image, AlphaMode::kChannelPacked);
+  return image;
+}
+
+TEST(Images, OfEveryTypeAndLayoutAreShown) {
+  using scene::PixelType;
+  const auto half = [](float v) { return glm::packHalf1x16(v); };
+  struct Case {
+    scene::Image image;
+    glm::dvec3 color;
+    double alpha;
+    int64_t texel_bytes;
+  };
+  const Case cases[] = {
+      {texel<uint8_t>(PixelType::kByte, {51}), glm::dvec3(0.2), 1, 1},
+      {texel<uint8_t>(PixelType::kByte, {51, 102}), glm::dvec3(0.2), 0.4, 2},
+      {texel<uint8_t>(PixelType::kByte, {51, 102, 153, 204}), {0.2, 0.4, 0.6}, 0.8, 4},
+      {texel<uint8_t>(PixelType::kByte, {51}, true), glm::dvec3(linear(0.2)), 1, 1},
+      {texel<uint16_t>(PixelType::kShort, {13107}), glm::dvec3(0.2), 1, 2},
+      {texel<uint16_t>(PixelType::kShort, {13107, 26214}), glm::dvec3(0.2), 0.4, 4},
+      {texel<uint16_t>(PixelType::kShort, {1, 26214, 65535, 65535}), {1 / 65535.0, 0.4, 1}, 1, 8},
+      {texel<uint16_t>(PixelType::kHalf, {half(100)}), glm::dvec3(100), 1, 2},
+      {texel<uint16_t>(PixelType::kHalf, {half(0.5), half(0.25)}), glm::dvec3(0.5), 0.25, 4},
+      {texel<uint16_t>(PixelType::kHalf, {half(6e4f), half(-2), 0x7c00, half(1)}),
+       {glm::unpackHalf1x16(half(6e4f)), -2, 0},
+       1,
+       8},  // infinite is nothing
+      {texel<float>(PixelType::kFloat, {0.125f}), glm::dvec3(0.125), 1, 4},
+      {texel<float>(PixelType::kFloat, {0.125f, 0.5f}), glm::dvec3(0.125), 0.5, 8},
+      {texel<float>(PixelType::kFloat, {1e6f, NAN, -1, 1}), {1e6, 0, -1}, 1, 16},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(fmt::format("type {}, {} channels", int(c.image.type), c.image.channels));
+    const Picture color = picture_of(shown(c.image, show(false)));
+    EXPECT_LE(glm::length(color.rgb(Pass::kEmit, 16, 16) - c.color), 2e-6 * glm::length(c.color));
+    EXPECT_NEAR(picture_of(shown(c.image, show(false, true))).value(Pass::kEmit, 16, 16), c.alpha,
+                1e-6);
+    EXPECT_EQ(int64_t(c.image.bytes()), c.texel_bytes);
+  }
+}
+
+TEST(Images, OfGreyAreTransparentWhereTheyAreClipped) {
+  const TestScene s = shown(texel<uint8_t>(scene::PixelType::kByte, {51}), show(false, true),
+                            {.closest = true, .extension = Extension::kClip}, {3, 1}, {-1, 0});
+  const Picture p = picture_of(s);
+  EXPECT_EQ(p.value(Pass::kEmit, 2, 16), 0);
+  EXPECT_EQ(p.value(Pass::kEmit, 30, 16), 0);
+  EXPECT_EQ(p.value(Pass::kEmit, 16, 16), 1);
+}
+
+TEST(Images, ReleaseTheirPixelsWhenTheyCanBeMadeAgain) {
+  int made = 0;
+  const std::function<scene::Image()> make = [&] {
+    ++made;
+    return floats(1, 1, {0.5f, 0.25f, 2, 1});
+  };
+  scene::Image image = make();
+  image.reload = make;
+  const TestScene s = shown(image, show(false));
+  EXPECT_EQ(picture_of(s).rgb(Pass::kEmit, 16, 16), glm::dvec3(0.5, 0.25, 2));
+  shared_engine().edit(
+      [](scene::Scene& scene) { EXPECT_TRUE(scene.images().at(1).levels.empty()); });
+  EXPECT_EQ(made, 1) << "once for the test, and never for the frame";
+  // Out of use it leaves the GPU; used again it is made again.
+  const auto with_table = [&](std::vector<Id> table) {
+    shared_engine().edit([&](scene::Scene& scene) { scene.set_instances(s.instances, table); });
+    return render(request(kAbove, {Pass::kEmit})).rgb(Pass::kEmit, 16, 16);
+  };
+  EXPECT_EQ(with_table({}), glm::dvec3(0));
+  EXPECT_EQ(with_table(s.table), glm::dvec3(0.5, 0.25, 2));
+  EXPECT_EQ(made, 2);
+}
+
+TEST(Images, ThatCannotBeMadeAgainAreMagentaWithAWarning) {
+  scene::Image image = floats(1, 1, {1, 1, 1, 1});
+  image.levels.clear();
+  image.reload = []() -> scene::Image { fail("image 'Lost' cannot be opened: find the file"); };
+  const Picture p = picture_of(shown(image, show(false)));
+  EXPECT_EQ(p.rgb(Pass::kEmit, 16, 16), glm::dvec3(1, 0, 1));
+  ASSERT_EQ(p.stats.warnings.size(), 1u);
+  EXPECT_NE(p.stats.warnings[0].find("'Lost'"), std::string::npos);
+}
+
+TEST(Images, AreUploadedAheadOfTheFrame) {
+  const TestScene s = shown(floats(2, 2, uniform({0.5f, 0.25f, 2, 1}, 4)), show(false));
+  render(TestScene{}, request(kAbove, {Pass::kEmit}));
+  const int64_t before = gl::counters().uploaded_bytes, textures = gl::counters().textures;
+  shared_engine().edit([&](scene::Scene& scene) { scene.set_image(1, s.images[0]); });
+  shared_engine().upload_images();
+  while (gl::counters().textures == textures) std::this_thread::yield();
+  EXPECT_GE(gl::counters().uploaded_bytes - before, 5 * 16) << "both levels";
+  EXPECT_EQ(picture_of(s).rgb(Pass::kEmit, 16, 16), glm::dvec3(0.5, 0.25, 2));
 }
 
 TEST(Images, TooManyInOneMaterialWarn) {

@@ -261,41 +261,5 @@ TEST(SceneFacts, CountLampsAndTheWorld) {
   EXPECT_TRUE(scene.facts().world);  // nobody knows without asking each direction
 }
 
-TEST(MakeImage, PremultipliesStraightColoursInTheirCodes) {
-  const uint8_t rgba[8] = {128, 64, 255, 64, 255, 0, 7, 255};
-  const auto bytes = [&](bool srgb, scene::AlphaMode mode) {
-    const scene::Image image =
-        scene::make_image("i", 2, 1, std::span<const uint8_t>(rgba), srgb, mode);
-    const std::span<const uint8_t> stored = image.pixels<uint8_t>();
-    return std::vector<uint8_t>(stored.begin(), stored.end());
-  };
-  using Bytes = std::vector<uint8_t>;
-  EXPECT_EQ(bytes(true, scene::AlphaMode::kStraight), (Bytes{32, 16, 64, 64, 255, 0, 7, 255}));
-  EXPECT_EQ(bytes(true, scene::AlphaMode::kPremultiplied), (Bytes(rgba, rgba + 8)));
-  EXPECT_EQ(bytes(true, scene::AlphaMode::kChannelPacked), (Bytes(rgba, rgba + 8)));
-  EXPECT_EQ(bytes(true, scene::AlphaMode::kNone), (Bytes{128, 64, 255, 255, 255, 0, 7, 255}));
-  EXPECT_EQ(bytes(false, scene::AlphaMode::kStraight), (Bytes(rgba, rgba + 8)));  // no colour
-}
-
-TEST(MakeImage, KeepsFloatsFinite) {
-  const float rgba[4] = {kNaN, 2, std::numeric_limits<float>::infinity(), 0.5f};
-  const scene::Image image =
-      scene::make_image("i", 1, 1, std::span<const float>(rgba), true, scene::AlphaMode::kStraight);
-  const std::span<const float> stored = image.pixels<float>();
-  EXPECT_EQ(std::vector<float>(stored.begin(), stored.end()),
-            (std::vector<float>{0, 1, 0, 0.5f}));
-}
-
-TEST(MakeImage, RefusesSizesThatDoNotFit) {
-  const uint8_t rgba[8] = {};
-  for (const auto& [w, h] : {std::pair(0, 1), {1, 0}, {-1, -2}, {1, 1}, {3, 1}})
-    expect_error(
-        [&, w = w, h = h] {
-          scene::make_image("wood", w, h, std::span<const uint8_t>(rgba), true,
-                            scene::AlphaMode::kNone);
-        },
-        "'wood'");
-}
-
 }  // namespace
 }  // namespace panoptes::test

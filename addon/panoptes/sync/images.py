@@ -130,7 +130,10 @@ class ImageSender:
         image.pixels.foreach_get(pixels.reshape(-1))
         if image.channels != 4:
             pixels = _four_channels(pixels)
-        if image.is_float:
+        if not image.is_float:
+            # Blender holds bytes and hands out floats.
+            pixels = np.rint(pixels * 255.0).astype(np.uint8)
+        else:
             # Blender turned them scene-linear and premultiplied when it loaded them.
             settings = (False, 'PREMUL' if settings[1] != 'CHANNEL_PACKED' else settings[1])
         mark = ('pixels', pixels.shape, zlib.crc32(pixels.reshape(-1).view(np.uint8)), settings)
