@@ -8,6 +8,7 @@
 #include "base/runs.h"
 #include "scene/image.h"
 #include "scene/light.h"
+#include "scene/packing.h"
 #include "scene/visibility_shared.h"
 
 #include <glm/glm.hpp>
@@ -217,9 +218,5 @@ class Scene {
 
 // The world bounds of one placed mesh.
 Bounds placed_bounds(const Bounds& bounds, const glm::mat4& object_to_world);
-
-// Octahedral map in 2 x 16 bits, the same as pack_unit() of base/packing.glsl. `n` need not be unit;
-// a vector that is zero or not finite becomes +Z.
-uint32_t pack_unit(glm::vec3 n);
 
 }  // namespace panoptes::scene

@@ -9,7 +9,7 @@ import pytest
 
 from building import Sync, add_object, cube, quad
 from panoptes import compat
-from panoptes.sync import SceneSync, memory, meshes
+from panoptes.sync import SceneSync
 
 
 @pytest.fixture
@@ -123,18 +123,6 @@ class TestMeshes:
         sync.run()
         assert 'set_mesh' not in sync.recorder.names()
         assert len(sync.recorder.arguments('set_instances')[0][0]) == 0
-
-    def test_fast_topology_gives_the_same_bits(self, sync, monkeypatch):
-        bpy.ops.mesh.primitive_monkey_add()
-        thing = bpy.context.object
-        fast = meshes.extract(thing, pytest.fail)
-        if compat.VERSION < (3, 5, 0):
-            thing.data.calc_loop_triangles()
-            assert memory.read_topology(thing.data) is not None
-        monkeypatch.setattr(memory, 'read_topology', lambda mesh: None)
-        slow = meshes.extract(thing, pytest.fail)
-        for one, other in zip(fast[1:6], slow[1:6]):
-            assert one.dtype == other.dtype and np.array_equal(one, other)
 
 
 class TestBadGeometry:
