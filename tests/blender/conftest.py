@@ -43,12 +43,14 @@ def scene():
 
 
 @pytest.fixture
-def recorder(monkeypatch):
-    """The engine that the add-on uses is a `Recorder`, and is returned.
-
-    Meshes come as arrays in every version of Blender, so that tests can look at them.
-    """
+def arrays_only(monkeypatch):
+    """Meshes come as arrays in every version of Blender, so that tests can look at them."""
     monkeypatch.setattr(memory, 'read', lambda *arguments: None)
+
+
+@pytest.fixture
+def recorder(arrays_only):
+    """The engine that the add-on uses is a `Recorder`, and is returned."""
     engine = Recorder()
     native.use_factory(lambda: engine)
     yield engine
