@@ -139,7 +139,7 @@ class Walk:
     def _place(self, instance, thing):
         """Return the `_Place` of an instance whose objects are met for the first time."""
         kind = thing.type
-        if instance.show_particles and visibility.has_hair(thing) and self._is_shown(instance):
+        if instance.show_particles and visibility.has_hair(thing) and self._is_shown(thing):
             self._warn(f"Object '{thing.name}' has hair particles rendered as paths, which are not "
                        'supported yet; they are left out. Render them as objects, or convert them '
                        'to meshes.')
@@ -149,7 +149,7 @@ class Walk:
                 self._warn(f"Object '{thing.name}' is {_LEFT_OUT[kind]}, which is not supported "
                            'yet; it is left out.')
             return _NOTHING
-        if not instance.show_self or not self._is_shown(instance):
+        if not instance.show_self or not self._is_shown(thing):
             return _NOTHING
         if kind == 'LIGHT':
             return _Place(thing.name, light=thing.data)
@@ -162,12 +162,12 @@ class Walk:
             return _NOTHING
         return _Place(thing.name, geometry=found[0], slot_set=found[1], visibility=bits)
 
-    def _is_shown(self, instance):
-        """Apply a 3D View's local view and its hidden collections."""
-        if self._space is None:
-            return True
-        shown = (instance.parent or instance.object) if instance.is_instance else instance.object
-        return shown.original.visible_in_viewport_get(self._space)
+    def _is_shown(self, thing):
+        """Apply a 3D View's local view and its hidden collections.
+
+        Only evaluated objects know about them; an instance has what its maker has.
+        """
+        return self._space is None or thing.visible_in_viewport_get(self._space)
 
     def _shape(self, instance, thing, maker):
         """Return (index of the geometry, index of the slot set) of an instance, or None."""
