@@ -126,12 +126,12 @@ def test_cycles_agrees_about_the_camera(sync, tmp_path, hidden):
     scene.render.engine = 'CYCLES'
     scene.cycles.samples, scene.cycles.device = 1, 'CPU'
     scene.cycles.use_denoising = scene.cycles.use_adaptive_sampling = False
-    scene.render.resolution_x = scene.render.resolution_y = 2
+    scene.render.resolution_x = scene.render.resolution_y = 4
     scene.render.film_transparent = True
     scene.render.filepath = str(tmp_path / 'seen.exr')
     scene.render.image_settings.file_format = 'OPEN_EXR'
     scene.render.image_settings.color_mode = 'RGBA'
     bpy.ops.render.render(write_still=True)
-    alpha = np.empty(16, np.float32)
-    bpy.data.images.load(scene.render.filepath).pixels.foreach_get(alpha)
-    assert ours == bool(alpha[3] > 0.5) == (hidden == 'nothing')
+    pixels = np.empty((4, 4, 4), np.float32)
+    bpy.data.images.load(scene.render.filepath).pixels.foreach_get(pixels.reshape(-1))
+    assert ours == bool(pixels[2, 2, 3] > 0.5) == (hidden == 'nothing')
