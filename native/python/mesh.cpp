@@ -54,6 +54,7 @@ struct MeshHandle {
     fingerprint["triangles"] = digest(mesh->triangles);
     fingerprint["normals"] = digest(mesh->corner_normals);
     fingerprint["slots"] = digest(mesh->ranges);
+    fingerprint["texture_space"] = digest(&mesh->texture_space, sizeof(mesh->texture_space));
     fingerprint["default_uv"] = mesh->default_uv;
     fingerprint["default_color"] = mesh->default_color;
     py::dict attributes;
@@ -63,11 +64,20 @@ struct MeshHandle {
   }
 };
 
+// (low, high) in object space; none: what the triangles take up.
+using Box = std::optional<std::pair<std::array<float, 3>, std::array<float, 3>>>;
+
+scene::Bounds bounds_of(const Box& box) {
+  if (!box) return {};
+  const auto& [low, high] = *box;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
 scene::Mesh mesh_of_arrays(const std::string& name, const Array<float>& positions,
                            const Array<int>& triangle_vertices, const Array<int>& triangle_loops,
                            const Array<int>& triangle_slots, const Array<float>& loop_normals,
                            const py::dict& attributes, const std::string& default_uv,
-                           const std::string& default_color) {
+                           const std::string& default_color, const Box& texture_space) {
   scene::MeshInput input;
   input.name = name;
   input.positions = rows<glm::vec3>(positions, "positions", 3);
@@ -77,6 +87,7 @@ scene::Mesh mesh_of_arrays(const std::string& name, const Array<float>& position
   input.loop_normals = rows<glm::vec3>(loop_normals, "loop_normals", 3);
   input.default_uv = default_uv;
   input.default_color = default_color;
+  input.texture_space = bounds_of(texture_space);
   std::vector<Array<float>> keep;  // the arrays that the spans below point into
   for (const auto& [key, value] : attributes) {
     keep.push_back(value.cast<Array<float>>());
@@ -101,11 +112,12 @@ std::optional<MeshHandle> mesh_of_memory(
     int slot_count,
     const std::vector<std::tuple<std::string, std::string, std::string, uintptr_t, size_t>>&
         attributes,
-    const std::string& default_uv, const std::string& default_color) {
+    const std::string& default_uv, const std::string& default_color, const Box& texture_space) {
   MeshPointers p{name, default_uv, default_color,
                  vertices.first, loops.first, polygons.first, triangles.first,
                  vertices.second, loops.second, polygons.second, triangles.second,
-                 loop_normals, vertex_normals, polygon_normals, slots, slot_count, {}};
+                 loop_normals, vertex_normals, polygon_normals, slots, slot_count,
+                 bounds_of(texture_space), {}};
   for (const auto& [attribute, domain, type, address, count] : attributes)
     p.attributes.push_back({attribute, domain, type, address, count});
   // The GIL is held: nobody may touch the mesh meanwhile.
@@ -133,21 +145,21 @@ void bind_meshes(py::module_& m, py::class_<Engine>& engine) {
            const Array<int>& triangle_vertices, const Array<int>& triangle_loops,
            const Array<int>& triangle_slots, const Array<float>& loop_normals,
            const py::dict& attributes, const std::string& default_uv,
-           const std::string& default_color) {
+           const std::string& default_color, const Box& texture_space) {
           return MeshHandle(mesh_of_arrays(name, positions, triangle_vertices, triangle_loops,
                                            triangle_slots, loop_normals, attributes, default_uv,
-                                           default_color),
+                                           default_color, texture_space),
                             0);
         },
         py::arg("name"), py::arg("positions"), py::arg("triangle_vertices"),
         py::arg("triangle_loops"), py::arg("triangle_slots"), py::arg("loop_normals"),
         py::arg("attributes"), py::arg("default_uv") = "", py::arg("default_color") = "",
-        "A Mesh from plain arrays.");
+        py::arg("texture_space") = py::none(), "A Mesh from plain arrays.");
   m.def("read_mesh", &mesh_of_memory, py::kw_only(), py::arg("name"), py::arg("vertices"),
         py::arg("loops"), py::arg("polygons"), py::arg("triangles"), py::arg("loop_normals"),
         py::arg("vertex_normals"), py::arg("polygon_normals"), py::arg("slots"),
         py::arg("slot_count"), py::arg("attributes"), py::arg("default_uv"),
-        py::arg("default_color"),
+        py::arg("default_color"), py::arg("texture_space"),
         "A Mesh from the memory of Blender 3.4, or None where it does not look like a mesh.");
   m.def("find_loop_normals", &find_loop_normals, py::arg("mesh"), py::arg("loops"),
         py::arg("loop_count"),
@@ -158,14 +170,16 @@ void bind_meshes(py::module_& m, py::class_<Engine>& engine) {
               const Array<int>& triangle_vertices, const Array<int>& triangle_loops,
               const Array<int>& triangle_slots, const Array<float>& loop_normals,
               const py::dict& attributes, const std::string& default_uv,
-              const std::string& default_color) {
+              const std::string& default_color, const Box& texture_space) {
              put(e, id,
                  mesh_of_arrays(name, positions, triangle_vertices, triangle_loops, triangle_slots,
-                                loop_normals, attributes, default_uv, default_color));
+                                loop_normals, attributes, default_uv, default_color,
+                                texture_space));
            },
            py::arg("id"), py::arg("name"), py::arg("positions"), py::arg("triangle_vertices"),
            py::arg("triangle_loops"), py::arg("triangle_slots"), py::arg("loop_normals"),
-           py::arg("attributes"), py::arg("default_uv") = "", py::arg("default_color") = "")
+           py::arg("attributes"), py::arg("default_uv") = "", py::arg("default_color") = "",
+           py::arg("texture_space") = py::none())
       .def("set_mesh",
            [](Engine& e, Id id, MeshHandle& handle) {
              if (!handle.mesh) fail("a mesh was handed over twice: please report it");

@@ -59,6 +59,7 @@ struct MeshPointers {
   uintptr_t loop_normals = 0, vertex_normals = 0, polygon_normals = 0;
   uintptr_t slots = 0;  // int32 a polygon; 0 when all are slot 0
   int slot_count = 1;   // polygons beyond it use the last one
+  scene::Bounds texture_space;
   std::vector<AttributePointer> attributes;
 };
 

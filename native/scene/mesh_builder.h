@@ -3,7 +3,8 @@
 //
 // A source says where things are. It is a template parameter, so that a gather compiles to a load:
 //
-//   std::string name;  std::string default_uv, default_color;
+//   std::string name, default_uv, default_color;
+//   Bounds texture_space;         empty: the bounds
 //   size_t vertices(), triangles();
 //   glm::vec3 position(v);        object space; may be NaN
 //   glm::uvec3 corners(t);        the vertices of a triangle, all below vertices()
@@ -141,6 +142,7 @@ BuiltMesh build_mesh(const Source& in) {
     mesh.corner_normals[i] = in.normals(t);
     for (int k = 0; k < 3; ++k) mesh.bounds.add(mesh.positions[v[k]]);
   }
+  mesh.texture_space = in.texture_space.empty() ? mesh.bounds : in.texture_space;
   for (std::future<Attribute>& attribute : attributes)
     mesh.attributes.push_back(attribute.get());
   return result;

@@ -60,6 +60,7 @@ struct Mesh {
   std::vector<Attribute> attributes;
   std::string default_uv, default_color;
   Bounds bounds;
+  Bounds texture_space;  // mapped to 0..1 by generated coordinates
   std::string warning;  // what had to be left out; empty when nothing
 };
 
@@ -78,6 +79,7 @@ struct MeshInput {
   };
   std::vector<LoopAttribute> attributes;
   std::string default_uv, default_color;
+  Bounds texture_space;  // empty: the bounds
 };
 
 // Orders triangles by slot, gathers loops to corners and leaves out triangles with a vertex that is

@@ -86,7 +86,7 @@ def main():
     thing = build(options.triangles, options.auto_smooth)
     engine = native.module().Engine()
     blender_ms = [timed(lambda: prepare(thing.data))[0] for _ in range(options.repeat)]
-    ways = {"foreach_get": lambda *arguments: None, "memory": None}
+    ways = {"foreach_get": lambda *arguments, **named: None, "memory": None}
     runs = {way: [] for way in ways}
     for _ in range(options.repeat):
         # Taking turns spreads whatever else the machine does over both.

@@ -45,7 +45,7 @@ def scene():
 @pytest.fixture
 def arrays_only(monkeypatch):
     """Meshes come as arrays in every version of Blender, so that tests can look at them."""
-    monkeypatch.setattr(memory, 'read', lambda *arguments: None)
+    monkeypatch.setattr(memory, 'read', lambda *arguments, **named: None)
 
 
 @pytest.fixture

@@ -27,7 +27,7 @@ class TestMeshes:
         add_object(mesh)
         sync.run()
         (arguments,) = sync.recorder.arguments('set_mesh')
-        _, name, positions, vertices, loops, slots, normals, attributes, uv_name, color = arguments
+        _, name, positions, vertices, loops, slots, normals, attributes, uv_name, color, space = arguments
         assert name == 'Object'
         assert positions.dtype == normals.dtype == np.float32
         assert vertices.dtype == loops.dtype == slots.dtype == np.int32
@@ -35,7 +35,7 @@ class TestMeshes:
         assert np.allclose(normals, (0, 0, 1)) and normals.shape == (4, 3)
         assert sorted(set(vertices.flat)) == [0, 1, 2, 3]
         assert np.array_equal(attributes['Map'].reshape(-1), np.arange(8))
-        assert uv_name == 'Map' and color == ''
+        assert uv_name == 'Map' and color == '' and space == ((0, 0, -1), (1, 1, 1))
         for array in (positions, vertices, loops, slots, normals):
             assert array.flags.c_contiguous
 

@@ -27,7 +27,7 @@ def both(scene, native_module, monkeypatch):
         told, told_slowly = [], []
         fast = meshes.extract(evaluated, slots, WANTED, told.append)
         with monkeypatch.context() as patch:
-            patch.setattr(memory, 'read', lambda *arguments: None)
+            patch.setattr(memory, 'read', lambda *arguments, **named: None)
             slow = meshes.extract(evaluated, slots, WANTED, told_slowly.append)
         assert fast.available == slow.available and fast.delivered == slow.delivered
         assert isinstance(slow.mesh, (meshes.MeshArrays, type(None)))
@@ -300,7 +300,7 @@ def test_memory_that_is_no_mesh_is_refused(native_module, edit):
     name, domain, kind, count = arrays['attribute']
     found = native_module.read_mesh(
         name='Fake', **blocks, loop_normals=0, vertex_normals=normals, polygon_normals=normals,
-        slots=0, slot_count=1, default_uv='', default_color='',
+        slots=0, slot_count=1, default_uv='', default_color='', texture_space=None,
         attributes=[(name, domain, kind, arrays['map'].ctypes.data, count)])
     assert (found is None) == (edit is not None)
 
@@ -309,7 +309,7 @@ def test_other_versions_use_arrays(scene, native_module, monkeypatch):
     monkeypatch.setattr(compat, 'VERSION', (4, 3, 2))
     thing = monkey()
     thing.data.calc_loop_triangles()
-    assert memory.read(thing.data, 'Monkey', 1, [], '', '') is None
+    assert memory.read(thing.data, 'Monkey', 1, []) is None
 
 
 @ONLY_OLD

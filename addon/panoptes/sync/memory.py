@@ -95,11 +95,11 @@ def _slots(mesh):
     return _array(attribute.data, 'INT')[0]
 
 
-def read(mesh, name, slots, attributes, default_uv, default_color):
+def read(mesh, name, slots, attributes, **named):
     """Return the native Mesh of a mesh whose loop triangles are there, or None.
 
     `slots` is the number of material slots; `attributes` names the colour and other attributes that
-    are wanted beside the UV maps.
+    are wanted beside the UV maps. `named` are those of `MeshArrays` that are no arrays.
     """
     if not (3, 4, 0) <= compat.VERSION < (3, 5, 0):
         return None
@@ -112,6 +112,6 @@ def read(mesh, name, slots, attributes, default_uv, default_color):
                           *_array(attribute.data, attribute.data_type)))
         return module.read_mesh(
             name=name, **blocks, **_normals(module, mesh, blocks['loops']), slots=_slots(mesh),
-            slot_count=slots, attributes=found, default_uv=default_uv, default_color=default_color)
+            slot_count=slots, attributes=found, **named)
     except (_Unknown, native.Unavailable):
         return None

@@ -30,13 +30,14 @@ class MeshArrays(NamedTuple):
     attributes: dict               # name -> float32[L, 2] (UV) or float32[L, 4] (linear colour)
     default_uv: str
     default_color: str
+    texture_space: tuple           # (low, high) corner of what generated coordinates map to 0..1
 
     @property
     def fingerprint(self):
         """What tells this mesh from another: names, shapes and checksums."""
         named = sorted(self.attributes.items())
         arrays = (*self[1:6], *(array for _, array in named))
-        return (self.default_uv, self.default_color, tuple(name for name, _ in named),
+        return (self.default_uv, self.default_color, self.texture_space, tuple(name for name, _ in named),
                 tuple((a.shape, zlib.crc32(np.ascontiguousarray(a).reshape(-1).view(np.uint8)))
                       for a in arrays))
 
@@ -108,6 +109,15 @@ def _default_uv(mesh):
     return next((layer.name for layer in mesh.uv_layers if layer.active_render), '')
 
 
+def _texture_space(mesh):
+    """Return the corners of a mesh's texture space: the undeformed mesh, unless the artist moved it."""
+    pairs = tuple(zip(mesh.texspace_location, mesh.texspace_size))
+    if not np.isfinite(pairs).all():
+        return None
+    return (tuple(place - abs(size) for place, size in pairs),
+            tuple(place + abs(size) for place, size in pairs))
+
+
 def _warn_broken(count, name, warn):
     if count:
         warn(f"Object '{name}' has {count} vertices whose coordinates are not numbers; their "
@@ -115,8 +125,9 @@ def _warn_broken(count, name, warn):
 
 
 def _read_memory(mesh, name, slots, chosen, warn):
-    found = memory.read(mesh, name, slots, chosen, _default_uv(mesh),
-                        compat.default_color_name(mesh))
+    found = memory.read(mesh, name, slots, chosen, default_uv=_default_uv(mesh),
+                        default_color=compat.default_color_name(mesh),
+                        texture_space=_texture_space(mesh))
     if found is None:
         return None
     _warn_broken(found.broken_vertices, name, warn)
@@ -147,7 +158,8 @@ def _read_arrays(mesh, name, slots, chosen, warn):
             np.nan_to_num(array, copy=False, posinf=0.0, neginf=0.0)
     return MeshArrays(name, positions, np.ascontiguousarray(triangle_vertices),
                       np.ascontiguousarray(triangle_loops), np.ascontiguousarray(triangle_slots),
-                      normals, values, _default_uv(mesh), compat.default_color_name(mesh))
+                      normals, values, _default_uv(mesh), compat.default_color_name(mesh),
+                      _texture_space(mesh))
 
 
 def _polygon_slots(mesh):
