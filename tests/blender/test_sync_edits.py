@@ -11,10 +11,9 @@ from scene_state import Follower
 
 
 @pytest.fixture(params=['memory', 'arrays'])
-def stage(scene, native_module, request):
+def stage(scene, request):
     """A small scene with something of everything that is edited; both ways of reading meshes."""
-    if request.param == 'arrays':
-        request.getfixturevalue('arrays_only')
+    request.getfixturevalue({'memory': 'native_module', 'arrays': 'arrays_only'}[request.param])
     first = cube()
     first.name = 'First'
     for name in ('Red', 'Green'):
@@ -34,6 +33,7 @@ def stage(scene, native_module, request):
     text.body = 'ab'
     add_object(text, 'Text')
     scene.world = bpy.data.worlds.new('World')
+    scene.world.use_nodes = True
     bpy.context.view_layer.objects.active = first
     return scene
 
@@ -288,7 +288,8 @@ def lamp():
 
 
 def world():
-    bpy.data.worlds['World'].color = (1, 0, 0)
+    tree = bpy.data.worlds['World'].node_tree
+    next(n for n in tree.nodes if n.type == 'BACKGROUND').inputs['Strength'].default_value = 3
 
 
 def frame():

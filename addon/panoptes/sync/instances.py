@@ -197,21 +197,21 @@ class Walk:
 
         Return (its index or None when it is empty, whether it is the object's own data).
         """
-        data = thing.data
-        own_name = compat.stable_key(data)
-        if data.original.evaluated_get(self._depsgraph).as_pointer() == pointer:
+        data = real.data
+        own = real.original.data
+        if data is not None and data.as_pointer() == pointer and not real.modifiers:
             # The mesh itself: whichever of its users comes first, it is the same.
-            owner = own_name
+            owner = compat.stable_key(own)
         else:
             owner = compat.stable_key(real)
         # Nodes can hang several generated meshes on one object; they come in a stable order.
         ordinal = self._ordinals[owner] = self._ordinals.get(owner, -1) + 1
         # A curve's own geometry is the mesh made of it, which comes first.
-        own_data = real.data is not None and (
-            real.data.as_pointer() == pointer or (real.type != 'MESH' and ordinal == 0))
-        owners = {owner, own_name, compat.stable_key(real), compat.stable_key(maker)}
-        if real.data is not None:
-            owners.add(compat.stable_key(real.data))
+        own_data = data is not None and (
+            data.as_pointer() == pointer or (real.type != 'MESH' and ordinal == 0))
+        owners = {owner, compat.stable_key(real), compat.stable_key(maker)}
+        if own is not None:
+            owners.add(compat.stable_key(own))
         slots = _slots(thing, real, own_data)
         self._slot_set(slots)
         geometry = Geometry((owner, ordinal), tuple(owners), pointer, len(slots))
