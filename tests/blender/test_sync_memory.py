@@ -309,7 +309,7 @@ def test_other_versions_use_arrays(scene, native_module, monkeypatch):
     monkeypatch.setattr(compat, 'VERSION', (4, 3, 2))
     thing = monkey()
     thing.data.calc_loop_triangles()
-    assert memory.read(thing.data, 'Monkey', 1, []) is None
+    assert memory.read(thing.data, 'Monkey', 1, [], {}) is None
 
 
 @ONLY_OLD

@@ -122,7 +122,8 @@ class SceneSync:
                 # Slots that are met later may want more: most likely what they wanted last time.
                 names = materials.attributes_of(slots).union(held.delivered if held else ())
             if not current or held.delivered != names & held.available:
-                held = self._extract(mirror, thing, geometry, names, report)
+                held = self._extract(mirror, thing, geometry, names, report,
+                                     depsgraph.mode == 'RENDER')
             met[key] = held
             return not held.empty
 
@@ -148,9 +149,9 @@ class SceneSync:
                 for geometry, indices in zip(found.geometry, found.slot_sets_by_geometry())}
 
     @staticmethod
-    def _extract(mirror, thing, geometry, wanted, report):
+    def _extract(mirror, thing, geometry, wanted, report, final):
         warnings = []
-        extracted = meshes.extract(thing, geometry.slots, wanted, warnings.append)
+        extracted = meshes.extract(thing, geometry.slots, wanted, warnings.append, final)
         report.meshes_extracted += 1
         if extracted.mesh is not None:
             mirror.put_mesh(mirror.id_of('mesh', geometry.key), extracted.mesh)

@@ -37,6 +37,23 @@ def others(mesh):
             and len(a.data)]
 
 
+def undeformed(mesh):
+    """Return positions before modifiers and shape keys, float32[V, 3], or None where they are the
+    same. Blender keeps them for final renders only."""
+    places = np.empty((2, len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get('co', places[0].reshape(-1))
+    mesh.vertices.foreach_get('undeformed_co', places[1].reshape(-1))
+    # They went through the texture space and back, each at the precision of floats.
+    tolerance = 1e-5 * max(map(abs, (*mesh.texspace_location, *mesh.texspace_size)))
+    # What is not a number differs from nothing.
+    return places[1] if (np.abs(places[0] - places[1]) > tolerance).any() else None
+
+
+def opaque(vectors):
+    """Return float32[N, 3] as four channels."""
+    return np.concatenate((vectors, np.ones((len(vectors), 1), np.float32)), axis=1)
+
+
 def read(mesh, name, loop_vertices):
     """Return an attribute's values, float32[L, 4], one row a loop (linear colour)."""
     attribute = mesh.attributes[name]

@@ -95,11 +95,11 @@ def _slots(mesh):
     return _array(attribute.data, 'INT')[0]
 
 
-def read(mesh, name, slots, attributes, **named):
+def read(mesh, name, slots, attributes, points, **named):
     """Return the native Mesh of a mesh whose loop triangles are there, or None.
 
     `slots` is the number of material slots; `attributes` names the colour and other attributes that
-    are wanted beside the UV maps. `named` are those of `MeshArrays` that are no arrays.
+    are wanted beside the UV maps, `points` holds further ones as float32[V, 3]. `named` are those of `MeshArrays` that are no arrays.
     """
     if not (3, 4, 0) <= compat.VERSION < (3, 5, 0):
         return None
@@ -110,6 +110,8 @@ def read(mesh, name, slots, attributes, **named):
         for attribute in map(mesh.attributes.__getitem__, attributes):
             found.append((attribute.name, attribute.domain, attribute.data_type,
                           *_array(attribute.data, attribute.data_type)))
+        found += [(key, 'POINT', 'FLOAT_VECTOR', values.ctypes.data, len(values))
+                  for key, values in points.items()]
         return module.read_mesh(
             name=name, **blocks, **_normals(module, mesh, blocks['loops']), slots=_slots(mesh),
             slot_count=slots, attributes=found, **named)

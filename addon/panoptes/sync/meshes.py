@@ -12,6 +12,7 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from .. import compat
+from ..nodes import UNDEFORMED
 from . import attributes, memory
 
 
@@ -63,41 +64,48 @@ class NativeMesh(NamedTuple):
 
 class Extracted(NamedTuple):
     """What an object holds: a mesh (None without any triangle), and its attributes beside UV maps
-    and colours: `available` names, of which `delivered` are in the mesh."""
+    and colours: `available` names, of which `delivered` are in the mesh.
+
+    Undeformed positions count as delivered, too, where nothing deforms the mesh.
+    """
 
     mesh: Optional[NamedTuple]
     available: frozenset
     delivered: frozenset
 
 
-def extract(thing, slots, wanted, warn):
+def extract(thing, slots, wanted, warn, final=False):
     """Return the `Extracted` mesh of an evaluated object of type MESH.
 
     `slots` is its number of material slots: faces may name more, and Blender then uses the last.
     `wanted` are the names of attributes that its materials read. `warn` takes a sentence; it is
-    called when the object had to be repaired.
+    called when the object had to be repaired. `final` says that Blender evaluated for a final
+    render, so that it kept where vertices were before modifiers.
     """
+    moved = final and (len(thing.modifiers) or thing.original.data.shape_keys is not None)
+    own = {UNDEFORMED} if moved else set()
     # Evaluated data can be read as it is, but in edit mode it is a wrapper without arrays.
     mesh = thing.data
     if not mesh.is_editmode:
-        return _extract(mesh, thing.name, slots, wanted, warn)
+        return _extract(mesh, thing.name, slots, wanted, own, warn)
     mesh = thing.to_mesh()
     try:
-        return _extract(mesh, thing.name, slots, wanted, warn)
+        return _extract(mesh, thing.name, slots, wanted, own, warn)
     finally:
         thing.to_mesh_clear()
 
 
-def _extract(mesh, name, slots, wanted, warn):
+def _extract(mesh, name, slots, wanted, own, warn):
     mesh.calc_loop_triangles()
-    available = frozenset(attributes.others(mesh))
+    available = frozenset(attributes.others(mesh)) | own
     delivered = available & frozenset(wanted)
     found = None
     if len(mesh.loop_triangles):
         # Names: calc_normals_split() moves the attributes themselves.
-        chosen = attributes.colors(mesh) + sorted(delivered)
-        found = (_read_memory(mesh, name, slots, chosen, warn)
-                 or _read_arrays(mesh, name, slots, chosen, warn))
+        chosen = attributes.colors(mesh) + sorted(delivered - own)
+        moved = attributes.undeformed(mesh) if delivered & own else None
+        found = (_read_memory(mesh, name, slots, chosen, moved, warn)
+                 or _read_arrays(mesh, name, slots, chosen, moved, warn))
     return Extracted(found if found and _triangles(found) else None, available, delivered)
 
 
@@ -124,8 +132,9 @@ def _warn_broken(count, name, warn):
              'faces are left out. Delete those vertices or the modifier that makes them.')
 
 
-def _read_memory(mesh, name, slots, chosen, warn):
-    found = memory.read(mesh, name, slots, chosen, default_uv=_default_uv(mesh),
+def _read_memory(mesh, name, slots, chosen, moved, warn):
+    points = {} if moved is None else {UNDEFORMED: moved}
+    found = memory.read(mesh, name, slots, chosen, points, default_uv=_default_uv(mesh),
                         default_color=compat.default_color_name(mesh),
                         texture_space=_texture_space(mesh))
     if found is None:
@@ -134,7 +143,7 @@ def _read_memory(mesh, name, slots, chosen, warn):
     return NativeMesh(found)
 
 
-def _read_arrays(mesh, name, slots, chosen, warn):
+def _read_arrays(mesh, name, slots, chosen, moved, warn):
     triangles, loops = len(mesh.loop_triangles), len(mesh.loops)
     positions = np.empty((len(mesh.vertices), 3), np.float32)
     mesh.vertices.foreach_get('co', positions.reshape(-1))
@@ -148,6 +157,8 @@ def _read_arrays(mesh, name, slots, chosen, warn):
     normals = compat.loop_normals(mesh)
     values = {layer.name: compat.uv_coordinates(layer, loops) for layer in mesh.uv_layers}
     values.update((key, attributes.read(mesh, key, loop_vertices)) for key in chosen)
+    if moved is not None:
+        values[UNDEFORMED] = attributes.opaque(moved)[loop_vertices]
 
     positions, keep = _repair(positions, triangle_vertices, name, warn)
     if keep is not None:
