@@ -77,8 +77,7 @@ def _slots(thing, real, own_data):
     `real` is the evaluated object behind it. Geometry that nodes generate brings its own materials;
     an object's slots count for its own data only.
     """
-    slots = real.material_slots if own_data else ()
-    found = tuple(slot.material for slot in slots)
+    found = tuple([slot.material for slot in real.material_slots]) if own_data else ()
     return found or tuple(getattr(thing.data, 'materials', ())) or (None,)
 
 
@@ -185,7 +184,7 @@ class Walk:
 
     def _slot_set(self, slots):
         """Return the index of a tuple of materials among those met so far."""
-        key = tuple(m.as_pointer() if m is not None else 0 for m in slots)
+        key = tuple([m.as_pointer() if m is not None else 0 for m in slots])
         found = self._slot_sets.get(key)
         if found is None:
             found = self._slot_sets[key] = len(self._slot_sets)

@@ -34,7 +34,7 @@ def rays(thing, maker, view_layer, warn):
 
 def has_hair(thing):
     """Tell whether an object has hair particles that are rendered as paths."""
-    return any(modifier.type == 'PARTICLE_SYSTEM'
-               and modifier.particle_system.settings.type == 'HAIR'
-               and modifier.particle_system.settings.render_type == 'PATH'
-               for modifier in thing.modifiers)
+    # Most objects have no particles at all, and this answers at once.
+    return len(thing.particle_systems) > 0 and any(
+        modifier.type == 'PARTICLE_SYSTEM' and modifier.particle_system.settings.type == 'HAIR'
+        and modifier.particle_system.settings.render_type == 'PATH' for modifier in thing.modifiers)
