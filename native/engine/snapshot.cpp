@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kMagic = 0x53504e50;  // "PNPS"
 // Raised whenever the order or the meaning of what is written below changes.
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 
 // One description serves both directions: transfer(archive, value) writes or reads.
 class Writer {
@@ -108,6 +108,7 @@ void transfer(A& a, scene::Mesh& m) {
   transfer(a, m.default_uv);
   transfer(a, m.default_color);
   transfer(a, m.bounds);
+  transfer(a, m.texture_space);
   transfer(a, m.warning);
 }
 

@@ -117,8 +117,9 @@ void MeshStore::update_record(GpuMesh& mesh, const scene::Mesh& source) {
   record[1] = mesh.triangles.first;
   record[8] = seed_of(source);
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = source.bounds.empty() ? 0 : source.bounds.low[axis];
-    const float extent = source.bounds.empty() ? 0 : source.bounds.high[axis] - low;
+    const scene::Bounds& space = source.texture_space;
+    const float low = space.empty() ? 0 : space.low[axis];
+    const float extent = space.empty() ? 0 : space.high[axis] - low;
     const float scale = extent > 0 ? 1 / extent : 0;
     record[size_t(2 + axis)] = std::bit_cast<uint32_t>(scale);
     record[size_t(5 + axis)] = std::bit_cast<uint32_t>(scale > 0 ? -low * scale : 0.5f);

@@ -6,7 +6,7 @@
 #include "gl/counters.h"
 #include "image_io/image_io.h"
 #include "python/convert.h"
-
+#include "python/mesh.h"
 
 namespace panoptes::python {
 
@@ -22,36 +22,6 @@ template <class F>
 void edit(Engine& engine, F&& change) {
   py::gil_scoped_release release;
   engine.edit(std::forward<F>(change));
-}
-
-void set_mesh(Engine& engine, Id id, const std::string& name, const Array<float>& positions,
-              const Array<int>& triangle_vertices, const Array<int>& triangle_loops,
-              const Array<int>& triangle_slots, const Array<float>& loop_normals,
-              const py::dict& attributes, const std::string& default_uv,
-              const std::string& default_color) {
-  scene::MeshInput input;
-  input.name = name;
-  input.positions = rows<glm::vec3>(positions, "positions", 3);
-  input.triangle_vertices = rows<glm::ivec3>(triangle_vertices, "triangle_vertices", 3);
-  input.triangle_loops = rows<glm::ivec3>(triangle_loops, "triangle_loops", 3);
-  input.triangle_slots = rows<int>(triangle_slots, "triangle_slots", 1);
-  input.loop_normals = rows<glm::vec3>(loop_normals, "loop_normals", 3);
-  input.default_uv = default_uv;
-  input.default_color = default_color;
-  std::vector<Array<float>> keep;  // the arrays that the spans below point into
-  for (const auto& [key, value] : attributes) {
-    keep.push_back(value.cast<Array<float>>());
-    const Array<float>& array = keep.back();
-    const int channels = array.ndim() == 2 ? int(array.shape(1)) : 0;
-    if (channels != 2 && channels != 4)
-      fail("attribute '{}' of mesh '{}' must have two or four values a loop: please report it",
-           key.cast<std::string>(), name);
-    input.attributes.push_back(
-        {key.cast<std::string>(), channels, {array.data(), size_t(array.size())}});
-  }
-  py::gil_scoped_release release;
-  scene::Mesh mesh = scene::make_mesh(input);
-  engine.edit([&](Scene& scene) { scene.set_mesh(id, std::move(mesh)); });
 }
 
 std::vector<glm::mat4> matrices_of(const Array<float>& array) {
@@ -164,10 +134,10 @@ void bind_job(py::module_& m) {
       });
 }
 
-void bind_engine(py::module_& m) {
+py::class_<Engine> bind_engine(py::module_& m) {
   const auto no_gil = py::call_guard<py::gil_scoped_release>();
-  py::class_<Engine>(m, "Engine", "A render thread with its own OpenGL context, and its scene.")
-      .def(py::init([](bool prefer_software) {
+  py::class_<Engine> type(m, "Engine", "A render thread with its own OpenGL context, and its scene.");
+  type.def(py::init([](bool prefer_software) {
              py::gil_scoped_release release;
              return std::make_unique<Engine>(gl::ContextOptions{prefer_software});
            }),
@@ -175,10 +145,6 @@ void bind_engine(py::module_& m) {
       .def_property_readonly("device", [](const Engine& e) { return e.device().renderer; })
       .def("close", &Engine::close, no_gil, "Stops the render thread. Idempotent.")
       .def("counters", [](const Engine&) { return counters(); })
-      .def("set_mesh", &set_mesh, py::arg("id"), py::arg("name"), py::arg("positions"),
-           py::arg("triangle_vertices"), py::arg("triangle_loops"), py::arg("triangle_slots"),
-           py::arg("loop_normals"), py::arg("attributes"), py::arg("default_uv") = "",
-           py::arg("default_color") = "")
       .def("remove_mesh", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_mesh(id); }); })
       .def("set_instances", &set_instances, py::arg("mesh_ids"), py::arg("matrices"),
            py::arg("material_offsets"), py::arg("material_table"),
@@ -234,6 +200,7 @@ void bind_engine(py::module_& m) {
         const engine::RenderRequest r = request(dict);
         edit(e, [&](Scene& s) { engine::write_snapshot(path, s, r); });
       });
+  return type;
 }
 
 }  // namespace
@@ -243,7 +210,8 @@ PYBIND11_MODULE(panoptes_native, m) {
   m.attr("__version__") = PANOPTES_VERSION;
   py::register_exception<Error>(m, "Error", PyExc_RuntimeError);
   bind_job(m);
-  bind_engine(m);
+  py::class_<Engine> engine = bind_engine(m);
+  bind_meshes(m, engine);
 }
 
 }  // namespace panoptes::python

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "base/error.h"
+#include "scene/mesh_builder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +10,6 @@
 namespace panoptes::scene {
 
 namespace {
-
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 bool finite(const glm::mat4& m) {
   for (int c = 0; c < 4; ++c)
@@ -58,114 +55,7 @@ void join(ArrayChange& due, const ArrayChange& change) {
   merge_runs(due.runs, kRunGap);
 }
 
-void check_indices(const MeshInput& in) {
-  const int vertices = int(in.positions.size()), loops = int(in.loop_normals.size());
-  for (size_t t = 0; t < in.triangle_vertices.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int v = in.triangle_vertices[t][k], l = in.triangle_loops[t][k];
-      if (v < 0 || v >= vertices || l < 0 || l >= loops)
-        fail("mesh '{}' has a triangle with an index out of range: run Mesh > Clean Up on it, or "
-             "validate the mesh",
-             in.name);
-    }
-}
-
 }  // namespace
-
-uint32_t pack_unit(glm::vec3 n) {
-  const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-  if (!(sum > 0) || !std::isfinite(sum)) n = {0, 0, 1};
-  else n /= sum;
-  glm::vec2 o{n.x, n.y};
-  if (n.z < 0)
-    o = {(1 - std::abs(n.y)) * (n.x >= 0 ? 1.0f : -1.0f),
-         (1 - std::abs(n.x)) * (n.y >= 0 ? 1.0f : -1.0f)};
-  const auto snorm = [](float v) {
-    return uint32_t(uint16_t(int16_t(std::lround(std::clamp(v, -1.0f, 1.0f) * 32767.0f))));
-  };
-  return snorm(o.x) | snorm(o.y) << 16;
-}
-
-Mesh make_mesh(const MeshInput& in) {
-  const size_t count = in.triangle_vertices.size();
-  if (in.triangle_loops.size() != count || in.triangle_slots.size() != count)
-    fail("mesh '{}' was handed over with arrays of different lengths: please report it", in.name);
-  check_indices(in);
-
-  Mesh mesh;
-  mesh.name = in.name;
-  mesh.positions.assign(in.positions.begin(), in.positions.end());
-  mesh.default_uv = in.default_uv;
-  mesh.default_color = in.default_color;
-
-  // Broken vertices take their triangles with them; the positions left must be finite for bounds.
-  std::vector<uint8_t> broken(mesh.positions.size(), 0);
-  bool any_broken = false;
-  for (size_t i = 0; i < mesh.positions.size(); ++i)
-    if (!finite(mesh.positions[i])) {
-      broken[i] = 1;
-      any_broken = true;
-      mesh.positions[i] = glm::vec3(0);
-    }
-
-  // A counting sort by slot keeps the order within a slot.
-  std::map<int, uint32_t> slots;
-  std::vector<uint8_t> keep(count, 1);
-  size_t dropped = 0;
-  for (size_t t = 0; t < count; ++t) {
-    const glm::ivec3 v = in.triangle_vertices[t];
-    if (any_broken && (broken[v.x] || broken[v.y] || broken[v.z])) {
-      keep[t] = 0;
-      ++dropped;
-      continue;
-    }
-    ++slots[std::max(in.triangle_slots[t], 0)];
-  }
-  uint32_t first = 0;
-  std::map<int, uint32_t> cursor;
-  for (const auto& [slot, n] : slots) {
-    mesh.ranges.push_back({slot, first, n});
-    cursor[slot] = first;
-    first += n;
-  }
-  std::vector<uint32_t> order(first);
-  if (slots.size() == 1 && dropped == 0) {
-    for (uint32_t t = 0; t < first; ++t) order[t] = t;
-  } else {
-    for (size_t t = 0; t < count; ++t)
-      if (keep[t]) order[cursor[std::max(in.triangle_slots[t], 0)]++] = uint32_t(t);
-  }
-  if (dropped)
-    mesh.warning = fmt::format(
-        "Mesh '{}' has vertices that are not finite; {} of its triangles are left out: check its "
-        "modifiers and shape keys.",
-        in.name, dropped);
-
-  std::vector<uint32_t> packed(in.loop_normals.size());
-  for (size_t l = 0; l < packed.size(); ++l) packed[l] = pack_unit(in.loop_normals[l]);
-  mesh.triangles.resize(first);
-  mesh.corner_normals.resize(first);
-  for (uint32_t i = 0; i < first; ++i) {
-    const glm::ivec3 v = in.triangle_vertices[order[i]], l = in.triangle_loops[order[i]];
-    mesh.triangles[i] = glm::uvec3(v);
-    mesh.corner_normals[i] = {packed[l.x], packed[l.y], packed[l.z]};
-    for (int k = 0; k < 3; ++k) mesh.bounds.add(mesh.positions[v[k]]);
-  }
-
-  for (const MeshInput::LoopAttribute& a : in.attributes) {
-    if (a.values.size() != in.loop_normals.size() * size_t(a.channels))
-      fail("attribute '{}' of mesh '{}' has the wrong length: please report it", a.name, in.name);
-    Attribute attribute{a.name, a.channels, std::vector<float>(size_t(first) * 3 * a.channels)};
-    float* out = attribute.values.data();
-    for (uint32_t i = 0; i < first; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const float* value = &a.values[size_t(in.triangle_loops[order[i]][k]) * a.channels];
-        for (int c = 0; c < a.channels; ++c) *out++ = std::isfinite(value[c]) ? value[c] : 0.0f;
-      }
-    mesh.attributes.push_back(std::move(attribute));
-  }
-  return mesh;
-}
 
 Bounds placed_bounds(const Bounds& bounds, const glm::mat4& m) {
   Bounds placed;

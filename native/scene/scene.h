@@ -8,6 +8,7 @@
 #include "base/runs.h"
 #include "scene/image.h"
 #include "scene/light.h"
+#include "scene/packing.h"
 #include "scene/visibility_shared.h"
 
 #include <glm/glm.hpp>
@@ -59,6 +60,7 @@ struct Mesh {
   std::vector<Attribute> attributes;
   std::string default_uv, default_color;
   Bounds bounds;
+  Bounds texture_space;  // mapped to 0..1 by generated coordinates
   std::string warning;  // what had to be left out; empty when nothing
 };
 
@@ -77,6 +79,7 @@ struct MeshInput {
   };
   std::vector<LoopAttribute> attributes;
   std::string default_uv, default_color;
+  Bounds texture_space;  // empty: the bounds
 };
 
 // Orders triangles by slot, gathers loops to corners and leaves out triangles with a vertex that is
@@ -217,9 +220,5 @@ class Scene {
 
 // The world bounds of one placed mesh.
 Bounds placed_bounds(const Bounds& bounds, const glm::mat4& object_to_world);
-
-// Octahedral map in 2 x 16 bits, the same as pack_unit() of base/packing.glsl. `n` need not be unit;
-// a vector that is zero or not finite becomes +Z.
-uint32_t pack_unit(glm::vec3 n);
 
 }  // namespace panoptes::scene

@@ -193,12 +193,21 @@ vec3 hit_object_position(Hit hit) {
          hit.barycentrics.z * texelFetch(vertex_positions, int(v.z)).xyz;
 }
 
-// The object's bounding box mapped to 0..1.
-vec3 hit_generated(Hit hit) {
+// A point in object space, with the mesh's texture space mapped to 0..1.
+vec3 hit_generated(Hit hit, vec3 position) {
   vec3 scale, offset;
   for (int i = 0; i < 3; ++i) {
     scale[i] = uintBitsToFloat(table(hit.mesh + MESH_GENERATED + i));
     offset[i] = uintBitsToFloat(table(hit.mesh + MESH_GENERATED + 3 + i));
   }
-  return hit_object_position(hit) * scale + offset;
+  return position * scale + offset;
+}
+
+vec3 hit_generated(Hit hit) { return hit_generated(hit, hit_object_position(hit)); }
+
+// `undeformed` names where points were before modifiers and shape keys moved them; meshes that
+// nothing moves are without.
+vec3 hit_generated(Hit hit, int undeformed) {
+  if (table(hit.mesh + MESH_ATTRIBUTES + undeformed) == NO_ATTRIBUTE) return hit_generated(hit);
+  return hit_generated(hit, hit_color(hit, undeformed).xyz);
 }

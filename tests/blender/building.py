@@ -72,3 +72,15 @@ def quad(name='Quad', materials=0):
 def cube():
     bpy.ops.mesh.primitive_cube_add()
     return bpy.context.object
+
+
+def material_reading(name):
+    """A material whose colour is the mesh attribute of this name."""
+    material = bpy.data.materials.new(f'Reads {name}')
+    material.use_nodes = True
+    tree = material.node_tree
+    node = tree.nodes.new('ShaderNodeAttribute')
+    node.attribute_name = name
+    principled = next(n for n in tree.nodes if n.type == 'BSDF_PRINCIPLED')
+    tree.links.new(node.outputs['Color'], principled.inputs['Base Color'])
+    return material

@@ -11,7 +11,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import panoptes  # noqa: E402
 from panoptes import native, session  # noqa: E402
-from panoptes.sync import SceneSync  # noqa: E402
+from panoptes.sync import SceneSync, memory  # noqa: E402
 from recorder import Recorder  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -43,7 +43,13 @@ def scene():
 
 
 @pytest.fixture
-def recorder():
+def arrays_only(monkeypatch):
+    """Meshes come as arrays in every version of Blender, so that tests can look at them."""
+    monkeypatch.setattr(memory, 'read', lambda *arguments, **named: None)
+
+
+@pytest.fixture
+def recorder(arrays_only):
     """The engine that the add-on uses is a `Recorder`, and is returned."""
     engine = Recorder()
     native.use_factory(lambda: engine)

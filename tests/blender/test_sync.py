@@ -9,7 +9,7 @@ import pytest
 
 from building import Sync, add_object, cube, quad
 from panoptes import compat
-from panoptes.sync import SceneSync, memory, meshes
+from panoptes.sync import SceneSync
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ class TestMeshes:
         add_object(mesh)
         sync.run()
         (arguments,) = sync.recorder.arguments('set_mesh')
-        _, name, positions, vertices, loops, slots, normals, attributes, uv_name, color = arguments
+        _, name, positions, vertices, loops, slots, normals, attributes, uv_name, color, space = arguments
         assert name == 'Object'
         assert positions.dtype == normals.dtype == np.float32
         assert vertices.dtype == loops.dtype == slots.dtype == np.int32
@@ -35,7 +35,7 @@ class TestMeshes:
         assert np.allclose(normals, (0, 0, 1)) and normals.shape == (4, 3)
         assert sorted(set(vertices.flat)) == [0, 1, 2, 3]
         assert np.array_equal(attributes['Map'].reshape(-1), np.arange(8))
-        assert uv_name == 'Map' and color == ''
+        assert uv_name == 'Map' and color == '' and space == ((0, 0, -1), (1, 1, 1))
         for array in (positions, vertices, loops, slots, normals):
             assert array.flags.c_contiguous
 
@@ -123,18 +123,6 @@ class TestMeshes:
         sync.run()
         assert 'set_mesh' not in sync.recorder.names()
         assert len(sync.recorder.arguments('set_instances')[0][0]) == 0
-
-    def test_fast_topology_gives_the_same_bits(self, sync, monkeypatch):
-        bpy.ops.mesh.primitive_monkey_add()
-        thing = bpy.context.object
-        fast = meshes.extract(thing, pytest.fail)
-        if compat.VERSION < (3, 5, 0):
-            thing.data.calc_loop_triangles()
-            assert memory.read_topology(thing.data) is not None
-        monkeypatch.setattr(memory, 'read_topology', lambda mesh: None)
-        slow = meshes.extract(thing, pytest.fail)
-        for one, other in zip(fast[1:6], slow[1:6]):
-            assert one.dtype == other.dtype and np.array_equal(one, other)
 
 
 class TestBadGeometry:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import compat
 from . import helpers
-from .compiler import Compiler, deep_recursion
+from .compiler import UNDEFORMED, Compiler, deep_recursion  # noqa: F401
 from . import closures, colors, converters, inputs, textures  # noqa: F401 (register their nodes)
 from .scope import Scope, resolve
 from .world import write_world

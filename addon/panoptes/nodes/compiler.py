@@ -20,6 +20,8 @@ from .values import ParameterBlock, Value, convert, convert_number, socket_kind,
 
 VALUE_NODES = {}
 
+# The mesh attribute that holds positions before deformation; no artist's own begins with a dot.
+UNDEFORMED = '.undeformed'
 # Deeper chains than this are met in generated trees only; Python's own limit is about 300 nodes.
 _RECURSION_LIMIT = 20000
 
@@ -183,7 +185,9 @@ class Compiler:
 
     def generated(self):
         """Coordinates that an unlinked procedural texture uses."""
-        return 'hit_generated(hit)' if self.domain == 'material' else 'direction'
+        if self.domain != 'material':
+            return 'direction'
+        return f'hit_generated(hit, {self.attribute(UNDEFORMED)})'
 
     def attribute(self, name):
         """Return the GLSL argument for a named attribute of the mesh."""

@@ -7,6 +7,7 @@ that may have changed; the `Mirror` then sends only what differs.
 """
 
 import time
+from typing import NamedTuple
 
 import numpy as np
 
@@ -48,13 +49,21 @@ class SyncReport:
             self.warnings.append(sentence)
 
 
+class _Held(NamedTuple):
+    """What is known of a geometry since it was last extracted."""
+
+    pointer: int          # address of the evaluated data that it was read from
+    empty: bool           # nothing to draw
+    warnings: tuple       # sentences that hold as long as the geometry does
+    available: frozenset  # names of attributes that a material could read
+    delivered: frozenset  # those that were sent
+
+
 class SceneSync:
     """Keeps the native scene equal to what one dependency graph shows."""
 
     def __init__(self):
-        self._pointers = {}
-        self._empty = set()
-        self._mesh_warnings = {}
+        self._held = {}
         self._shaders = {}
         self._world = None
 
@@ -99,39 +108,55 @@ class SceneSync:
     # Geometry
 
     def _sync_geometry(self, mirror, depsgraph, space, changes, materials, report):
-        met = set()
+        """Walk over the instances and extract what has changed; return the `InstanceList`."""
+        met, wanted = {}, {}
 
-        def visit(thing, geometry):
-            met.add(geometry.key)
-            known = self._pointers.get(geometry.key) == geometry.pointer
-            if known and not changes.touches_geometry(geometry.owners):
-                for sentence in self._mesh_warnings.get(geometry.key, ()):
-                    report.warn(sentence)
-                return geometry.key not in self._empty
-            return self._extract(mirror, thing, geometry, report)
+        def visit(thing, geometry, slots):
+            key = geometry.key
+            held = met.get(key) or self._held.get(key)
+            current = held is not None and held.pointer == geometry.pointer and (
+                key in met or not changes.touches_geometry(geometry.owners))
+            if key in wanted:
+                names = wanted[key]
+            else:
+                # Slots that are met later may want more: most likely what they wanted last time.
+                names = materials.attributes_of(slots).union(held.delivered if held else ())
+            if not current or held.delivered != names & held.available:
+                held = self._extract(mirror, thing, geometry, names, report,
+                                     depsgraph.mode == 'RENDER')
+            met[key] = held
+            return not held.empty
 
-        found = Walk(depsgraph, materials.meet, visit, report.warn, space).run()
-        self._empty &= met
-        self._pointers = {k: v for k, v in self._pointers.items() if k in met}
-        self._mesh_warnings = {k: v for k, v in self._mesh_warnings.items() if k in met}
+        def walk():
+            return Walk(depsgraph, materials.meet, visit, report.warn, space).run()
+
+        found = walk()
+        # Now it is known which attributes are read; where that was not foreseen, read again.
+        wanted = self._wanted_attributes(found, materials)
+        if any(names & met[key].available != met[key].delivered for key, names in wanted.items()):
+            found = walk()
+        self._held = met
+        for held in met.values():
+            for sentence in held.warnings:
+                report.warn(sentence)
         return found
 
-    def _extract(self, mirror, thing, geometry, report):
-        sentences = []
-        arrays = meshes.extract(thing, sentences.append)
+    @staticmethod
+    def _wanted_attributes(found, materials):
+        """Return the names of attributes that each geometry's materials read, by key."""
+        names = [materials.attributes_of_addresses(slots) for slots in found.slot_sets]
+        return {geometry.key: frozenset().union(*(names[index] for index in indices))
+                for geometry, indices in zip(found.geometry, found.slot_sets_by_geometry())}
+
+    @staticmethod
+    def _extract(mirror, thing, geometry, wanted, report, final):
+        warnings = []
+        extracted = meshes.extract(thing, geometry.slots, wanted, warnings.append, final)
         report.meshes_extracted += 1
-        self._pointers[geometry.key] = geometry.pointer
-        self._mesh_warnings[geometry.key] = sentences
-        for sentence in sentences:
-            report.warn(sentence)
-        if arrays is None:
-            self._empty.add(geometry.key)
-            return False
-        self._empty.discard(geometry.key)
-        # Faces may name slots that the object does not have; Blender uses the last one.
-        np.clip(arrays.triangle_slots, 0, geometry.slots - 1, out=arrays.triangle_slots)
-        mirror.put_mesh(mirror.id_of('mesh', geometry.key), arrays)
-        return True
+        if extracted.mesh is not None:
+            mirror.put_mesh(mirror.id_of('mesh', geometry.key), extracted.mesh)
+        return _Held(geometry.pointer, extracted.mesh is None, tuple(warnings),
+                     extracted.available, extracted.delivered)
 
     # World
 
@@ -152,5 +177,5 @@ class SceneSync:
             table.extend(material_ids[pointer] for pointer in pointers)
         offsets = np.array(starts or [0], np.int32)
         mirror.put_instances(mesh_ids[found.mesh_index], found.matrices,
-                             offsets[found.slot_index] if len(found.slot_index)
-                             else np.empty(0, np.int32), np.array(table or [0], np.int64))
+                             offsets[found.slot_index], np.array(table or [0], np.int64),
+                             found.visibility)

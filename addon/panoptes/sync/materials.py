@@ -27,6 +27,15 @@ class MaterialPass:
             if material is not None and material.as_pointer() not in self._met:
                 self._met[material.as_pointer()] = self._compile(material)
 
+    def attributes_of(self, slots):
+        """Return the names of mesh attributes that the materials of these slots read."""
+        return self.attributes_of_addresses(m.as_pointer() for m in slots if m is not None)
+
+    def attributes_of_addresses(self, addresses):
+        """The same for materials by address; 0 is an empty slot."""
+        keys = (self._met[address][0] for address in addresses if address)
+        return frozenset().union(*(self.shaders[key].facts['attributes'] for key in keys))
+
     def _compile(self, material):
         """Compile a material and start on its images; return (key, name, textures)."""
         key = compat.stable_key(material)

@@ -5,18 +5,7 @@ The engine is shared by viewports and final renders, each of which wants its own
 scene. They all write through one `Mirror`, which remembers what was sent and sends differences only.
 """
 
-import zlib
-
 import numpy as np
-
-# Camera, diffuse, glossy, transmission, volume scatter and shadow rays.
-SEEN_BY_ALL = 63
-
-
-def fingerprint(*arrays):
-    """Return a hashable summary of arrays' shapes and bits."""
-    return tuple((a.shape, zlib.crc32(np.ascontiguousarray(a).reshape(-1).view(np.uint8)))
-                 for a in arrays)
 
 
 class Mirror:
@@ -53,17 +42,12 @@ class Mirror:
         return mesh_id in self._meshes
 
     def put_mesh(self, mesh_id, mesh):
-        """Send a `MeshArrays` unless the engine holds the same bits; return whether it was sent."""
-        attributes = sorted(mesh.attributes.items())
-        mark = (mesh.default_uv, mesh.default_color, tuple(name for name, _ in attributes),
-                fingerprint(mesh.positions, mesh.triangle_vertices, mesh.triangle_loops,
-                            mesh.triangle_slots, mesh.loop_normals, *(a for _, a in attributes)))
+        """Send an extracted mesh unless the engine holds the same bits; return whether it was sent."""
+        mark = mesh.fingerprint
         if self._meshes.get(mesh_id) == mark:
             return False
         self._meshes.pop(mesh_id, None)
-        self.engine.set_mesh(mesh_id, mesh.name, mesh.positions, mesh.triangle_vertices,
-                             mesh.triangle_loops, mesh.triangle_slots, mesh.loop_normals,
-                             mesh.attributes, mesh.default_uv, mesh.default_color)
+        self.engine.set_mesh(mesh_id, *mesh.arguments())
         self._meshes[mesh_id] = mark
         return True
 
@@ -114,17 +98,14 @@ class Mirror:
             self.engine.set_lights(lights)
             self._lights = mark
 
-    def put_instances(self, mesh_ids, matrices, offsets, table, visibility=None):
+    def put_instances(self, mesh_ids, matrices, offsets, table, visibility):
         """Send instances: all of them if the list changed, else only matrices that did.
 
-        `visibility` is uint8[N] of the bits in shaders/scene/visibility_shared.h; None means that
-        every ray meets every instance.
+        `visibility` is uint8[N] of the bits in shaders/scene/visibility_shared.h.
         """
-        if visibility is None:
-            visibility = np.full(len(mesh_ids), SEEN_BY_ALL, np.uint8)
-        rest = (mesh_ids, offsets, table, visibility)
         held = self._instances
-        same_list = held is not None and all(map(np.array_equal, held[0], rest))
+        listed = (mesh_ids, offsets, table, visibility)
+        same_list = held is not None and all(map(np.array_equal, held[0], listed))
         self._instances = None
         if not same_list:
             self.engine.set_instances(mesh_ids, matrices, offsets, table, visibility)
@@ -132,7 +113,7 @@ class Mirror:
             moved = np.flatnonzero((held[1] != matrices).any(axis=(1, 2))).astype(np.int32)
             if len(moved):
                 self.engine.set_instance_matrices(moved, np.ascontiguousarray(matrices[moved]))
-        self._instances = (rest, matrices)
+        self._instances = (listed, matrices)
 
     def keep_only(self, meshes, materials, images):
         """Remove whatever is not in these sets of ids."""
