@@ -69,7 +69,7 @@ def build(scene, size, samples, view, projection, passes, warn):
         'passes': list(passes),
         'method': method(scene.panoptes, warn),
         'filter_width': max(scene.render.filter_size, 0.01),
-        'exposure': 1.0,
+        'exposure': scene.panoptes.exposure,
         'force_all_effects': scene.panoptes.force_all_effects,
         'settings': _settings(scene),
     }
