@@ -165,8 +165,8 @@ def write_pass(render_pass, pixels):
         render_pass.rect.foreach_set(flat.reshape(-1, render_pass.channels))
 
 
-def draw_pixels(pixels, width, height):
-    """Draw scene-linear float32[H, W, 4] over the viewport's region of width x height pixels."""
+def draw_pixels(pixels, left, bottom, width, height):
+    """Draw scene-linear float32[H, W, 4] over a rectangle of the viewport's region, in pixels."""
     import gpu
     from gpu_extras.presets import draw_texture_2d
 
@@ -175,7 +175,7 @@ def draw_pixels(pixels, width, height):
     data = gpu.types.Buffer('FLOAT', pixels.shape, pixels)
     texture = gpu.types.GPUTexture((columns, rows), format='RGBA32F', data=data)
     gpu.state.blend_set('ALPHA_PREMULT')
-    draw_texture_2d(texture, (0, 0), width, height)
+    draw_texture_2d(texture, (left, bottom), width, height)
     gpu.state.blend_set('NONE')
 
 

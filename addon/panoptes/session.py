@@ -10,14 +10,19 @@ import json
 import sys
 import threading
 import traceback
+import weakref
 
 from . import native
+from .refinement import Turns
 from .sync import Mirror, SceneSync
 
 # Held by whoever writes to the native scene or renders from it.
 _lock = threading.RLock()
 _mirror = None
-_previews = {}
+
+# The jobs of all 3D Views, and the objects behind the views.
+turns = Turns()
+viewports = weakref.WeakSet()
 
 # Final renders share one, so that the frames of an animation send only what differs.
 final_sync = SceneSync()
@@ -50,18 +55,9 @@ def exclusive(wait):
             _lock.release()
 
 
-def note_preview(viewport, job):
-    """Remember the running job of a 3D View (None when it has ended)."""
-    if job is None:
-        _previews.pop(id(viewport), None)
-    else:
-        _previews[id(viewport)] = job
-
-
-def cancel_previews():
-    """Stop the jobs of all 3D Views: the engine renders one at a time, in order."""
-    for job in list(_previews.values()):
-        job.cancel()
+def viewport_warnings():
+    """Return what the 3D Views have to tell the artist, each sentence once."""
+    return list(dict.fromkeys(text for view in list(viewports) for text in view.warnings()))
 
 
 def sentence(error):

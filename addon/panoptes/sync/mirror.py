@@ -38,8 +38,19 @@ class Mirror:
         self._world = None
         self._instances = None
 
+    def state(self):
+        """Return a hashable summary of all that is held; equal states give equal pictures."""
+        instances = self._instances or ()
+        return hash((frozenset(self._meshes.items()), frozenset(self._materials.items()),
+                     frozenset(self._images.items()), tuple(self._lights or ()),
+                     self._world, fingerprint(*instances)))
+
     def id_of(self, kind, key):
-        """Return the id of `key` among 'mesh', 'material' or 'image' things."""
+        """Return the id of `key` among 'mesh', 'material' or 'image' things.
+
+        It stays the same for as long as the mirror lives, so that a thing that is hidden and shown
+        again leads to the same `state`.
+        """
         full = (kind, key)
         if full not in self._ids:
             self._ids[full] = self._next_id
@@ -142,8 +153,6 @@ class Mirror:
             for unused in [i for i in held if i not in wanted]:
                 remove(unused)
                 del held[unused]
-        gone = set(self._ids.values()) - meshes - materials - images
-        self._ids = {key: i for key, i in self._ids.items() if i not in gone}
 
 
 def _frozen(facts):
