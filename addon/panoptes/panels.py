@@ -2,10 +2,11 @@
 """Panels of the Render and View Layer tabs."""
 
 import json
+import textwrap
 
 import bpy
 
-from . import passes
+from . import passes, session
 
 ENGINE = 'PANOPTES'
 
@@ -128,8 +129,34 @@ class PANOPTES_PT_statistics(EnginePanel, bpy.types.Panel):
             else:
                 text, icon = f'{effect["name"]}: {effect.get("reason", "")}', 'BLANK1'
             column.label(text=text, icon=icon)
-        for sentence in stats.get('warnings', ()):
-            column.label(text=sentence, icon='ERROR')
+
+
+class PANOPTES_PT_warnings(EnginePanel, bpy.types.Panel):
+    """What the last final render and the 3D Views could not show as the scene asks for it."""
+
+    bl_label = 'Warnings'
+
+    @staticmethod
+    def _sentences(context):
+        try:
+            stats = json.loads(context.scene.panoptes.last_stats or '{}')
+        except ValueError:
+            stats = {}
+        return list(dict.fromkeys((*stats.get('warnings', ()), *session.viewport_warnings())))
+
+    @classmethod
+    def poll(cls, context):
+        """Show the panel when there is something to say."""
+        return super().poll(context) and bool(cls._sentences(context))
+
+    def draw(self, context):
+        """Draw the panel."""
+        # A label does not wrap its text; a letter is about a third of a button's height wide.
+        letters = max(int(context.region.width / (7 * context.preferences.system.ui_scale)) - 6, 20)
+        for sentence in self._sentences(context):
+            column = self.layout.column(align=True)
+            for index, line in enumerate(textwrap.wrap(sentence, letters)):
+                column.label(text=line, icon='BLANK1' if index else 'ERROR')
 
 
 class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
@@ -147,4 +174,4 @@ class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
 
 
 CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_shadows,
-           PANOPTES_PT_film, PANOPTES_PT_statistics, PANOPTES_PT_passes)
+           PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)

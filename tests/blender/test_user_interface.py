@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Panels, node menus and the operator: what the artist is offered when Panoptes is the engine."""
 
+import json
 import re
 import types
 
@@ -66,6 +67,7 @@ def draw(panel, **context):
     layout = Layout()
     stand_in = types.SimpleNamespace(layout=layout)
     stand_in._column = types.MethodType(cls._column, stand_in)
+    stand_in._sentences = getattr(cls, '_sentences', None)
     cls.draw(stand_in, context)
     return layout.drawn
 
@@ -136,15 +138,22 @@ class TestOurPanels:
     def test_render(self, scene):
         scene.panoptes.last_stats = ('{"device": "some", "samples": 2, "total_ms": 1500.0, "effects": '
                                      '[{"name": "lamps", "runs": false, "reason": "no lamps"}], '
-                                     '"warnings": ["It is late."]}')
-        drawn = draw('PANOPTES_PT_statistics')
-        assert 'It is late.' in drawn and 'lamps: no lamps' in drawn
+                                     '"warnings": []}')
+        assert 'lamps: no lamps' in draw('PANOPTES_PT_statistics')
         assert 'exposure' in draw('PANOPTES_PT_film')
         assert 'samples' in draw('PANOPTES_PT_sampling')
         assert 'seed' in draw('PANOPTES_PT_sampling_limits')
         assert 'soft_shadows' in draw('PANOPTES_PT_shadows')
         assert 'use_pass_z' in draw('PANOPTES_PT_passes')
         assert draw('PANOPTES_PT_take_over') == ['panoptes.take_over_cycles']
+
+    def test_warnings_are_wrapped(self, scene):
+        room = {'region': types.SimpleNamespace(width=300), 'preferences': bpy.context.preferences}
+        assert not bpy.types.PANOPTES_PT_warnings.poll(bpy.context)
+        long = 'A very long sentence about a thing that cannot be shown as the scene asks for it.'
+        scene.panoptes.last_stats = json.dumps({'warnings': ['It is late.', long]})
+        drawn = draw('PANOPTES_PT_warnings', **room)
+        assert drawn[0] == 'It is late.' and len(drawn) > 2 and ' '.join(drawn[1:]) == long
 
     @pytest.mark.parametrize('kind', ['POINT', 'SUN', 'SPOT', 'AREA'])
     def test_light(self, scene, kind):

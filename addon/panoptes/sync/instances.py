@@ -123,7 +123,9 @@ class Walk:
         shown = (instance.parent or instance.object) if instance.is_instance else instance.object
         key = shown.as_pointer()
         if key not in self._visible:
-            self._visible[key] = shown.original.visible_in_viewport_get(self._space)
+            # Blender notes local views with evaluated objects, local collections with the original.
+            asked = shown if self._space.local_view is not None else shown.original
+            self._visible[key] = asked.visible_in_viewport_get(self._space)
         return self._visible[key]
 
     def _place(self, instance, thing):
