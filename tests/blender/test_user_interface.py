@@ -148,7 +148,8 @@ class TestOurPanels:
         assert draw('PANOPTES_PT_take_over') == ['panoptes.take_over_cycles']
 
     def test_warnings_are_wrapped(self, scene):
-        room = {'region': types.SimpleNamespace(width=300), 'preferences': bpy.context.preferences}
+        room = {'region': types.SimpleNamespace(width=300), 'preferences': types.SimpleNamespace(
+            system=types.SimpleNamespace(ui_scale=1.0))}
         assert not bpy.types.PANOPTES_PT_warnings.poll(bpy.context)
         long = 'A very long sentence about a thing that cannot be shown as the scene asks for it.'
         scene.panoptes.last_stats = json.dumps({'warnings': ['It is late.', long]})
