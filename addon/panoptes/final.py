@@ -24,8 +24,9 @@ def render(engine, depsgraph):
     layer = depsgraph.view_layer
     request = requests.final(depsgraph, (), warn)
     size = (request['width'], request['height'])
-    session.turns.cancel_all()
     with session.exclusive(wait=True):
+        # From here on no 3D View starts another job.
+        session.turns.cancel_all()
         _tell(engine, 0.0, 'Synchronising the scene')
         mirror = session.mirror()
         report = session.final_sync.sync(mirror, depsgraph, incremental=False)

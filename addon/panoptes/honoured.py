@@ -35,9 +35,6 @@ _IGNORED = (
     ('OBJECT_PT_visibility', 'it offers holdouts; our own Visibility panel shows what counts'),
     ('OBJECT_PT_shading', 'light linking and shadow offsets are not supported'),
     ('OBJECT_PT_shadow_terminator', 'light linking and shadow offsets are not supported'),
-    ('RENDER_PT_freestyle', 'Freestyle lines are not drawn'),
-    ('VIEWLAYER_PT_freestyle', 'Freestyle lines are not drawn'),
-    ('MATERIAL_PT_freestyle', 'Freestyle lines are not drawn'),
 )
 
 

@@ -5,6 +5,8 @@ import numpy as np
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
+# Of the native engine.
+_WIDEST_FILTER = 10.0
 _METHOD_NAMES = {'fragment': 'Fragment tracing', 'primitive': 'Primitive tracing'}
 
 
@@ -47,6 +49,14 @@ def _settings(scene):
     return found
 
 
+def _filter_width(render, warn):
+    """Return the pixel filter's width in pixels, to each side."""
+    if render.filter_size > _WIDEST_FILTER:
+        warn(f'A pixel filter of {render.filter_size:g} pixels is too wide; {_WIDEST_FILTER:g} is used '
+             'instead.')
+    return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
+
+
 def build(scene, size, samples, view, projection, passes, warn):
     """Return a request.
 
@@ -70,7 +80,7 @@ def build(scene, size, samples, view, projection, passes, warn):
         'projection': projection,
         'passes': list(passes),
         'method': method(scene.panoptes, warn),
-        'filter_width': max(scene.render.filter_size, 0.01),
+        'filter_width': _filter_width(scene.render, warn),
         'exposure': scene.panoptes.exposure,
         'force_all_effects': scene.panoptes.force_all_effects,
         'settings': _settings(scene),

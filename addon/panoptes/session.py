@@ -68,7 +68,9 @@ def sentence(error):
     module = sys.modules.get('panoptes_native') or sys.modules.get(f'{__package__}.panoptes_native')
     known = (native.Unavailable,) + ((module.Error,) if module is not None else ())
     if isinstance(error, known):
-        return native.one_line(error)
+        text = native.one_line(error)
+        # The native side words its errors as the rest of a line that begins with a name.
+        return text[:1].upper() + text[1:] + ('' if text.endswith(('.', '!', '?')) else '.')
     traceback.print_exception(type(error), error, error.__traceback__)
     return (f'Panoptes stopped on an unexpected error ({type(error).__name__}: '
             f'{native.one_line(error)}); please report it with the console output.')

@@ -79,12 +79,12 @@ class TestBlendersPanels:
         'DATA_PT_lens', 'DATA_PT_camera', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface',
         'RENDER_PT_format', 'RENDER_PT_color_management', 'RENDER_PT_simplify', 'PHYSICS_PT_cloth',
         'PARTICLE_PT_emission', 'DATA_PT_uv_texture', 'MATERIAL_PT_preview', 'DATA_PT_spot',
-        'TEXTURE_PT_context', 'VIEWLAYER_PT_layer'])
+        'TEXTURE_PT_context', 'RENDER_PT_freestyle', 'VIEWLAYER_PT_layer'])
     def test_offered(self, name):
         assert name in honoured_names()
 
     @pytest.mark.parametrize('pattern', [
-        r'CYCLES_', r'RENDER_PT_(eevee|opengl)', r'DATA_PT_camera_dof', r'DATA_PT_EEVEE', r'freestyle',
+        r'CYCLES_', r'RENDER_PT_(eevee|opengl)', r'DATA_PT_camera_dof', r'DATA_PT_EEVEE',
         r'EEVEE_WORLD_PT_(?!surface)', r'EEVEE_(NEXT_)?MATERIAL_PT_(volume|displacement|settings)',
         r'stereo', r'lightprobe_', r'layer_passes', r'DATA_PT_area$', r'OBJECT_PT_(shading|visibility)'])
     def test_what_does_not_count_is_not_offered(self, pattern):
