@@ -53,7 +53,7 @@ class PANOPTES_PT_ray_visibility(EnginePanel, bpy.types.Panel):
 
 
 class PANOPTES_PT_light(EnginePanel, bpy.types.Panel):
-    """Values of a lamp; the cone of spots is in a panel of Blender's."""
+    """Values of a lamp."""
 
     bl_label = 'Light'
     bl_context = 'data'
@@ -75,6 +75,10 @@ class PANOPTES_PT_light(EnginePanel, bpy.types.Panel):
             column.prop(light, 'shadow_soft_size', text='Radius')
         if light.type == 'SUN':
             column.prop(light, 'angle')
+        if light.type == 'SPOT':
+            column.prop(light, 'spot_size', text='Cone Angle')
+            column.prop(light, 'spot_blend', text='Blend', slider=True)
+            column.prop(light, 'show_cone')
         if light.type == 'AREA':
             column.prop(light, 'shape')
             two = light.shape in ('RECTANGLE', 'ELLIPSE')

@@ -22,6 +22,7 @@ _BORROWED = {
 # count here: (name, why).
 _IGNORED = (
     ('DATA_PT_light', 'our own Light panel shows what counts'),
+    ('DATA_PT_spot', 'our own Light panel shows what counts'),
     ('DATA_PT_area', 'our own Light panel shows what counts'),
     ('NODE_DATA_PT_light', 'our own Light panel shows what counts'),
     ('DATA_PT_falloff_curve', 'lamps fall off as in nature'),

@@ -209,7 +209,7 @@ def broken(row, material):
 
 
 def not_rendered_yet(row, material):
-    """A volume, hair, a drawing and points: each is a sentence to the artist."""
+    """A volume, hair and points, each a sentence to the artist; and a drawing, which Blender adds itself."""
     place = row.place()
     cloud = bpy.data.volumes.new("cloud")
     cloud.materials.append(_fog())

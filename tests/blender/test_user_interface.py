@@ -78,7 +78,7 @@ class TestBlendersPanels:
     @pytest.mark.parametrize('name', [
         'DATA_PT_lens', 'DATA_PT_camera', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface',
         'RENDER_PT_format', 'RENDER_PT_color_management', 'RENDER_PT_simplify', 'PHYSICS_PT_cloth',
-        'PARTICLE_PT_emission', 'DATA_PT_uv_texture', 'MATERIAL_PT_preview', 'DATA_PT_spot',
+        'PARTICLE_PT_emission', 'DATA_PT_uv_texture', 'MATERIAL_PT_preview',
         'TEXTURE_PT_context', 'RENDER_PT_freestyle', 'VIEWLAYER_PT_layer'])
     def test_offered(self, name):
         assert name in honoured_names()
@@ -91,6 +91,14 @@ class TestBlendersPanels:
         offered = [name for name in honoured_names() if re.search(pattern, name)
                    and not name.startswith('PANOPTES')]
         assert not offered
+
+    def test_no_panel_hangs_on_one_that_is_not_offered(self):
+        """Blender draws a sub-panel below its parent only."""
+        named = {getattr(panel, 'bl_idname', panel.__name__): panel for panel in panels()}
+        lost = [panel.__name__ for panel in named.values() if 'PANOPTES' in panel.COMPAT_ENGINES
+                and 'PANOPTES' not in getattr(named.get(getattr(panel, 'bl_parent_id', None)),
+                                              'COMPAT_ENGINES', {'PANOPTES'})]
+        assert not lost
 
     def test_every_reason_names_a_panel_of_some_version(self):
         """In this version at least most of the names must exist; a typing error hides nothing else."""

@@ -9,13 +9,12 @@ from .. import compat
 from . import lights
 
 
-# Objects that would be seen, by what to call them.
+# Objects that would be seen, by what to call them. Grease Pencil drawings are drawn over the picture by
+# Blender itself.
 _LEFT_OUT = {
     'VOLUME': 'a volume',
     'CURVES': 'hair',
     'POINTCLOUD': 'a point cloud',
-    'GPENCIL': 'a Grease Pencil drawing',
-    'GREASEPENCIL': 'a Grease Pencil drawing',
 }
 
 
