@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures that refine, are interrupted and go on; and whose turn it is among several 3D Views."""
+"""Pictures that refine and go on; whose turn it is among several 3D Views; when a scene is the same."""
 
+import bpy
 import numpy as np
 import pytest
 
+from building import Sync, add_object, quad
 from panoptes.refinement import Refinement, Turns
+from recorder import Recorder
 
 
 class SlowJob:
@@ -144,3 +147,55 @@ class TestTurns:
         self.start(turns, engine, one)
         turns.cancel_all()
         assert engine.jobs[0].stopped
+
+
+class TestState:
+    """What tells a 3D View whether its picture still shows the scene."""
+
+    def test_equal_scenes_have_equal_states(self, scene, recorder):
+        sync, other = Sync(recorder), Sync(Recorder())
+        thing = add_object(quad(materials=1))
+        sync.full(), other.full()
+        before = sync.mirror.state()
+        assert before == other.mirror.state()
+        thing.location.x = 1.0
+        bpy.context.view_layer.update()
+        sync.full()
+        moved = sync.mirror.state()
+        assert moved != before
+        thing.location.x = 0.0
+        bpy.context.view_layer.update()
+        sync.full()
+        assert sync.mirror.state() == before
+
+    def test_hiding_and_showing_again(self, scene, recorder):
+        sync = Sync(recorder)
+        add_object(quad('Other'), 'Other')
+        thing = add_object(quad(materials=1))
+        sync.full()
+        before = sync.mirror.state()
+        for hidden in (True, False):
+            thing.hide_viewport = hidden
+            bpy.context.view_layer.update()
+            sync.full()
+            assert (sync.mirror.state() == before) != hidden
+
+    def test_lamps_materials_and_the_world_count(self, scene, recorder):
+        sync = Sync(recorder)
+        light = bpy.data.lights.new('Lamp', 'POINT')
+        add_object(light, 'Lamp')
+        material = bpy.data.materials.new('Material')
+        mesh = quad()
+        mesh.materials.append(material)
+        add_object(mesh)
+        world = scene.world = bpy.data.worlds.new('World')
+        material.use_nodes = world.use_nodes = False
+        states = set()
+        for change in (lambda: None, lambda: setattr(light, 'energy', 5.0),
+                       lambda: setattr(material, 'diffuse_color', (1, 0, 0, 1)),
+                       lambda: setattr(world, 'color', (0, 1, 0))):
+            change()
+            bpy.context.view_layer.update()
+            sync.full()
+            states.add(sync.mirror.state())
+        assert len(states) == 4

@@ -5,18 +5,12 @@ The engine is shared by viewports and final renders, each of which wants its own
 scene. They all write through one `Mirror`, which remembers what was sent and sends differences only.
 """
 
-import zlib
-
 import numpy as np
+
+from .summary import summary
 
 # Camera, diffuse, glossy, transmission, volume scatter and shadow rays.
 SEEN_BY_ALL = 63
-
-
-def fingerprint(*arrays):
-    """Return a hashable summary of arrays' shapes and bits."""
-    return tuple((a.shape, zlib.crc32(np.ascontiguousarray(a).reshape(-1).view(np.uint8)))
-                 for a in arrays)
 
 
 class Mirror:
@@ -40,10 +34,8 @@ class Mirror:
 
     def state(self):
         """Return a hashable summary of all that is held; equal states give equal pictures."""
-        instances = self._instances or ()
-        return hash((frozenset(self._meshes.items()), frozenset(self._materials.items()),
-                     frozenset(self._images.items()), tuple(self._lights or ()),
-                     self._world, fingerprint(*instances)))
+        return hash(summary((self._meshes, self._materials, self._images, self._lights, self._world,
+                             self._instances)))
 
     def id_of(self, kind, key):
         """Return the id of `key` among 'mesh', 'material' or 'image' things.
@@ -67,8 +59,8 @@ class Mirror:
         """Send a `MeshArrays` unless the engine holds the same bits; return whether it was sent."""
         attributes = sorted(mesh.attributes.items())
         mark = (mesh.default_uv, mesh.default_color, tuple(name for name, _ in attributes),
-                fingerprint(mesh.positions, mesh.triangle_vertices, mesh.triangle_loops,
-                            mesh.triangle_slots, mesh.loop_normals, *(a for _, a in attributes)))
+                summary((mesh.positions, mesh.triangle_vertices, mesh.triangle_loops,
+                         mesh.triangle_slots, mesh.loop_normals, *(a for _, a in attributes))))
         if self._meshes.get(mesh_id) == mark:
             return False
         self._meshes.pop(mesh_id, None)
