@@ -74,7 +74,7 @@ def test_frames_differ_where_something_moves(everything, tmp_path):
         pictures.append(render_combined(everything, tmp_path))
         assert np.isfinite(pictures[-1]).all() and not session.last_error
     for one, other in zip(pictures, pictures[1:]):
-        changed = (np.abs(one - other)[..., :3].max(axis=2) > 0.05).mean()
+        changed = (np.abs(one - other)[..., :3].max(axis=2) > 0.02).mean()
         assert 0.001 < changed < 0.1
 
 

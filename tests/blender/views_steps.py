@@ -54,7 +54,10 @@ def start():
     count_starts()
     scene = bpy.context.scene
     scene.render.engine = 'PANOPTES'
-    scene.panoptes.viewport_samples = 16
+    scene.panoptes.viewport_samples = 8
+    # Things that shine cast light, which is not what is looked at here.
+    scene.panoptes.realtime.shadow_resolution = 64
+    scene.panoptes.realtime.soft_shadows = False
     scene.render.resolution_x, scene.render.resolution_y = 64, 48
     for thing in list(scene.objects):
         if thing.type != 'CAMERA':
