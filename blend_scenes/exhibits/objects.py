@@ -5,7 +5,7 @@ import math
 
 import bpy
 
-from exhibits.gallery import above, link, operator_object, plain, thing
+from exhibits.gallery import above, link, operator_object, thing
 
 
 def _mesh(name, vertices, faces, *materials):
