@@ -18,18 +18,18 @@ bl_info = {
 
 def register():
     """Make the engine, its properties and its panels known to Blender."""
-    from . import engine, panels, properties
+    from . import engine, properties, user_interface
 
     properties.register()
     engine.register()
-    panels.register()
+    user_interface.register()
 
 
 def unregister():
     """Take back what `register` did and free the native engine."""
-    from . import engine, native, panels, properties
+    from . import engine, native, properties, user_interface
 
-    panels.unregister()
+    user_interface.unregister()
     engine.unregister()
     properties.unregister()
     native.close()

@@ -102,6 +102,12 @@ def image_has_straight_color(image):
     return not image_is_data(image) and image.alpha_mode not in ('CHANNEL_PACKED', 'NONE')
 
 
+def cycles_first_sample(settings):
+    """Return the first sample of a scene's settings for Cycles."""
+    # From 4.5 on the offset counts only where a subset is rendered.
+    return settings.sample_offset if getattr(settings, 'use_sample_subset', True) else 0
+
+
 # Meshes
 
 
@@ -159,8 +165,8 @@ def write_pass(render_pass, pixels):
         render_pass.rect.foreach_set(flat.reshape(-1, render_pass.channels))
 
 
-def draw_pixels(pixels, width, height):
-    """Draw scene-linear float32[H, W, 4] over the viewport's region of width x height pixels."""
+def draw_pixels(pixels, left, bottom, width, height):
+    """Draw scene-linear float32[H, W, 4] over a rectangle of the viewport's region, in pixels."""
     import gpu
     from gpu_extras.presets import draw_texture_2d
 
@@ -169,7 +175,7 @@ def draw_pixels(pixels, width, height):
     data = gpu.types.Buffer('FLOAT', pixels.shape, pixels)
     texture = gpu.types.GPUTexture((columns, rows), format='RGBA32F', data=data)
     gpu.state.blend_set('ALPHA_PREMULT')
-    draw_texture_2d(texture, (0, 0), width, height)
+    draw_texture_2d(texture, (left, bottom), width, height)
     gpu.state.blend_set('NONE')
 
 
@@ -182,3 +188,52 @@ def set_file_format(settings, file_format):
     if hasattr(settings, 'use_exr_interleave'):
         # One part with all channels, as before 5.0: many readers look at the first part only.
         settings.use_exr_interleave = True
+
+
+# User interface
+
+
+def light_color_properties(light):
+    """Return the names of the properties that make a light's colour in this version."""
+    names = ['color']
+    if hasattr(light, 'use_temperature'):
+        names.append('use_temperature')
+        if light.use_temperature:
+            names.append('temperature')
+    return names + (['exposure'] if hasattr(light, 'exposure') else [])
+
+
+def light_shadow_switches(light):
+    """Return (owner, property, label) of each switch that `light_casts_shadow` reads."""
+    found = [(light, 'use_shadow', 'Cast Shadow')]
+    cycles = getattr(light, 'cycles', None)
+    if hasattr(cycles, 'cast_shadow'):
+        found.append((cycles, 'cast_shadow', "Cycles' Switch"))
+    return found
+
+
+_offered = []
+
+
+def offer_shader_nodes(engine):
+    """Let the Add menu of the node editor offer shader nodes to this engine.
+
+    Before 4.0 the menu asks for Cycles or EEVEE by name, through functions of a module of Blender's;
+    later it asks whether EEVEE is not chosen.
+    """
+    if VERSION >= (4, 0, 0):
+        return
+    import nodeitems_builtins
+
+    asked = nodeitems_builtins.cycles_shader_nodes_poll
+    nodeitems_builtins.cycles_shader_nodes_poll = (
+        lambda context: context.engine == engine or asked(context))
+    _offered.append(asked)
+
+
+def withdraw_shader_nodes():
+    """Undo `offer_shader_nodes`."""
+    while _offered:
+        import nodeitems_builtins
+
+        nodeitems_builtins.cycles_shader_nodes_poll = _offered.pop()

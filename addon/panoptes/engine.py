@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import final, native, passes, requests, session
+from . import final, native, passes, preview, requests, session
 from .viewport import Viewport
 
 
@@ -13,7 +13,7 @@ class PanoptesRenderEngine(bpy.types.RenderEngine):
 
     bl_idname = 'PANOPTES'
     bl_label = 'Panoptes'
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_postprocess = True
     bl_use_shading_nodes_custom = False
     bl_use_eevee_viewport = True
@@ -33,13 +33,22 @@ class PanoptesRenderEngine(bpy.types.RenderEngine):
         """Called before `render`; everything is read there, where errors can be shown."""
 
     def render(self, depsgraph):
-        """Render one view layer of one frame."""
+        """Render one view layer of one frame, or a preview."""
+        if self.is_preview:
+            self._render_preview(depsgraph)
+            return
         try:
             final.render(self, depsgraph)
         except requests.BadRequest as error:
             self._fail(native.one_line(error))
         except Exception as error:  # whatever it was, Blender must go on
             self._fail(session.sentence(error))
+
+    def _render_preview(self, depsgraph):
+        try:
+            preview.render(self, depsgraph)
+        except Exception as error:  # an icon stays empty, that is all
+            session.sentence(error)
 
     def _fail(self, text):
         session.fail_final(text)

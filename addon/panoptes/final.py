@@ -5,37 +5,11 @@ import time
 
 import bpy
 
-from . import compat, passes, requests, session
+from . import requests, session
+from .results import LayerResult
 
 # Showing a picture that is still being rendered costs up to a third of a second.
 _PREVIEW_INTERVAL = 1.0
-
-
-class _LayerResult:
-    """The render result of one view layer, begun and ended exactly once."""
-
-    def __init__(self, engine, layer_name, size):
-        self._engine = engine
-        self._result = engine.begin_result(0, 0, *size, layer=layer_name)
-        self.pass_names = [p.name for p in self._passes() if p.name in passes.BY_NAME]
-
-    def _passes(self):
-        return self._result.layers[0].passes if self._result.layers else ()
-
-    def fill(self, job, names):
-        """Copy the job's last complete sample to these passes."""
-        for target in self._passes():
-            if target.name in names:
-                compat.write_pass(target, job.read(target.name))
-
-    def show(self, job):
-        """Show the combined picture so far."""
-        self.fill(job, ('Combined',))
-        self._engine.update_result(self._result)
-
-    def end(self, cancel=False):
-        """Hand the result to Blender."""
-        self._engine.end_result(self._result, cancel=cancel)
 
 
 def render(engine, depsgraph):
@@ -50,15 +24,16 @@ def render(engine, depsgraph):
     layer = depsgraph.view_layer
     request = requests.final(depsgraph, (), warn)
     size = (request['width'], request['height'])
-    session.cancel_previews()
     with session.exclusive(wait=True):
+        # From here on no 3D View starts another job.
+        session.turns.cancel_all()
         _tell(engine, 0.0, 'Synchronising the scene')
         mirror = session.mirror()
         report = session.final_sync.sync(mirror, depsgraph, incremental=False)
         for sentence in report.warnings:
             warn(sentence)
 
-        result = _LayerResult(engine, layer.name, size)
+        result = LayerResult(engine, layer.name, size)
         finished = False
         try:
             request['passes'] = result.pass_names or ['Combined']

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The native module and the one engine that this process shares.
+"""The native module and the engines that this process shares, one for each use.
 
-The engine owns a render thread and a GL context; creating it takes a moment, so it waits for the
-first use. It lives until the add-on is disabled or Blender exits.
+An engine owns a render thread, a GL context and a scene; creating it takes a moment, so it waits for
+the first use. It lives until the add-on is disabled or Blender exits.
 """
 
 import atexit
@@ -11,7 +11,7 @@ import sys
 import threading
 
 _lock = threading.Lock()
-_engine = None
+_engines = {}
 _factory = None
 
 
@@ -57,29 +57,31 @@ def use_factory(factory):
     _factory = factory
 
 
-def engine():
-    """Return the shared engine, created when first asked for; raises `Unavailable`."""
-    global _engine
+def engine(use='scene'):
+    """Return the engine for 'scene' (final renders and 3D Views) or 'preview' (Blender's icons).
+
+    It is created when first asked for; raises `Unavailable`.
+    """
     with _lock:
-        if _engine is None:
+        if use not in _engines:
             if _factory is not None:
-                _engine = _factory()
+                _engines[use] = _factory()
             else:
                 native = module()
                 try:
-                    _engine = native.Engine()
+                    _engines[use] = native.Engine()
                 except native.Error as error:
                     raise Unavailable(one_line(error)) from error
-        return _engine
+        return _engines[use]
 
 
 def close():
-    """End the render thread and free the GL context; safe to call at any time, repeatedly."""
-    global _engine
+    """End all render threads and free their GL contexts; safe to call at any time, repeatedly."""
     with _lock:
-        closing, _engine = _engine, None
-    if closing is not None:
-        closing.close()
+        closing = list(_engines.values())
+        _engines.clear()
+    for one in closing:
+        one.close()
 
 
 def one_line(error):

@@ -60,6 +60,10 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
         name='Time Budget',
         description='Stop after the sample that exceeds this many seconds. 0 renders all samples',
         default=0.0, min=0.0, subtype='TIME', unit='TIME_ABSOLUTE')
+    exposure: FloatProperty(
+        name='Exposure',
+        description='Multiplies the light of all passes; colours, depth and normals stay',
+        default=1.0, min=0.0, max=1e6, soft_max=10.0, precision=3)
     force_all_effects: BoolProperty(
         name='Force All Effects',
         description='Run every effect, also those that the scene cannot show. The picture stays the '

@@ -3,6 +3,10 @@
 
 import numpy as np
 
+# Enough for an icon; the larger previews are as small as a stamp, too.
+_PREVIEW_SAMPLES = 16
+# Of the native engine.
+_WIDEST_FILTER = 10.0
 _METHOD_NAMES = {'fragment': 'Fragment tracing', 'primitive': 'Primitive tracing'}
 
 
@@ -45,6 +49,14 @@ def _settings(scene):
     return found
 
 
+def _filter_width(render, warn):
+    """Return the pixel filter's width in pixels, to each side."""
+    if render.filter_size > _WIDEST_FILTER:
+        warn(f'A pixel filter of {render.filter_size:g} pixels is too wide; {_WIDEST_FILTER:g} is used '
+             'instead.')
+    return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
+
+
 def build(scene, size, samples, view, projection, passes, warn):
     """Return a request.
 
@@ -68,8 +80,8 @@ def build(scene, size, samples, view, projection, passes, warn):
         'projection': projection,
         'passes': list(passes),
         'method': method(scene.panoptes, warn),
-        'filter_width': max(scene.render.filter_size, 0.01),
-        'exposure': 1.0,
+        'filter_width': _filter_width(scene.render, warn),
+        'exposure': scene.panoptes.exposure,
         'force_all_effects': scene.panoptes.force_all_effects,
         'settings': _settings(scene),
     }
@@ -96,19 +108,48 @@ def _cropped(projection, region, width, height):
     return crop @ projection
 
 
+def _camera(depsgraph, camera, width, height):
+    """Return (world to camera, camera to clip space) of an evaluated camera."""
+    render = depsgraph.scene.render
+    projection = np.array(camera.calc_matrix_camera(
+        depsgraph, x=max(width, 1), y=max(height, 1), scale_x=render.pixel_aspect_x,
+        scale_y=render.pixel_aspect_y))
+    # A camera's scale never changes the picture.
+    return _inverted(camera.matrix_world.normalized()), projection
+
+
+def _frame(render):
+    """Return (width, height) of a scene's whole frame in pixels."""
+    return (render.resolution_x * render.resolution_percentage // 100,
+            render.resolution_y * render.resolution_percentage // 100)
+
+
+def _active_camera(depsgraph):
+    scene = depsgraph.scene
+    if scene.camera is None:
+        raise BadRequest(f"Scene '{scene.name}' has no camera; add one and make it the active "
+                         'camera.')
+    return scene.camera.evaluated_get(depsgraph)
+
+
+def preview(depsgraph):
+    """Return the request of a preview: few samples, small shadow maps, no longer than a second."""
+    width, height = _frame(depsgraph.scene.render)
+    view, projection = _camera(depsgraph, _active_camera(depsgraph), width, height)
+    request = build(depsgraph.scene, (width, height), (0, _PREVIEW_SAMPLES), view, projection,
+                    ['Combined'], lambda sentence: None)
+    request['settings'].update(time_budget=1.0, shadow_resolution=256)
+    return request
+
+
 def final(depsgraph, passes, warn):
     """Return the request of a final render of a dependency graph's scene.
 
     Its size is that of the render region, where one is set.
     """
-    scene = depsgraph.scene
-    render, camera = scene.render, scene.camera
-    if camera is None:
-        raise BadRequest(f"Scene '{scene.name}' has no camera; add one and make it the active "
-                         'camera.')
-    camera = camera.evaluated_get(depsgraph)
-    width = render.resolution_x * render.resolution_percentage // 100
-    height = render.resolution_y * render.resolution_percentage // 100
+    scene, camera = depsgraph.scene, _active_camera(depsgraph)
+    render = scene.render
+    width, height = _frame(render)
     if camera.type == 'CAMERA' and camera.data.type == 'PANO':
         warn(f"Camera '{camera.name}' is panoramic, which is not supported yet; a perspective view "
              'is used instead.')
@@ -118,25 +159,64 @@ def final(depsgraph, passes, warn):
     if render.use_multiview:
         warn('Stereoscopy is not supported yet; the view of the camera itself is rendered.')
     region = _region(render, width, height)
-    projection = np.array(camera.calc_matrix_camera(
-        depsgraph, x=max(width, 1), y=max(height, 1), scale_x=render.pixel_aspect_x,
-        scale_y=render.pixel_aspect_y))
-    # A camera's scale never changes the picture.
-    view = _inverted(camera.matrix_world.normalized())
+    view, projection = _camera(depsgraph, camera, width, height)
     settings = scene.panoptes
     samples = (settings.first_sample, settings.first_sample + settings.samples)
     return build(scene, (region[2] - region[0], region[3] - region[1]), samples, view,
                  _cropped(projection, region, width, height), passes, warn)
 
 
-def viewport(scene, size, region_data, warn):
-    """Return the request of a 3D View of `size` pixels."""
-    samples = (0, scene.panoptes.viewport_samples)
-    request = build(scene, size, samples, region_data.view_matrix, region_data.window_matrix,
-                    ['Combined'], warn)
+def _camera_frame(scene, space, region, region_data):
+    """Return the camera's frame (left, bottom, right, top) in a region's pixels, or None."""
+    camera = space.camera if space.use_local_camera else scene.camera
+    if camera is None or camera.type != 'CAMERA':
+        return None
+    corners = np.array([(*corner, 1.0) for corner in camera.data.view_frame(scene=scene)])
+    placed = corners @ np.array(region_data.perspective_matrix
+                                @ camera.matrix_world.normalized(), np.float64).T
+    if not (np.isfinite(placed).all() and (placed[:, 3] > 0.0).all()):
+        return None
+    places = (placed[:, :2] / placed[:, 3:] * 0.5 + 0.5) * (region.width, region.height)
+    return (*places.min(axis=0), *places.max(axis=0))
+
+
+def _view_rectangle(scene, space, region, region_data):
+    """Return the part (left, bottom, right, top) of a 3D View's region that is rendered, in pixels."""
+    whole = (0, 0, region.width, region.height)
+    if region_data.view_perspective == 'CAMERA':
+        border, prefix, used = scene.render, 'border', scene.render.use_border
+        frame = _camera_frame(scene, space, region, region_data) if used else None
+    else:
+        border, prefix, used = space, 'render_border', space.use_render_border
+        frame = whole
+    if not used or frame is None:
+        return whole
+    found = []
+    for side in ('min', 'max'):
+        for axis in (0, 1):
+            part = getattr(border, f'{prefix}_{side}_{"xy"[axis]}')
+            place = frame[axis] + part * (frame[axis + 2] - frame[axis])
+            found.append(int(min(max(round(place), 0), whole[axis + 2])))
+    left, bottom, right, top = found
+    # Where the border lies outside the region, or between two pixels, there is nothing to see.
+    return (left, bottom, right, top) if left < right and bottom < top else whole
+
+
+def viewport(depsgraph, region, region_data, space, pixel, warn):
+    """Return (request, (left, bottom, width, height)) of a 3D View: the place is in the region's pixels.
+
+    One pixel of the picture covers `pixel` x `pixel` of the region.
+    """
+    scene = depsgraph.scene
+    rectangle = left, bottom, right, top = _view_rectangle(scene, space, region, region_data)
+    size = (max((right - left) // pixel, 1), max((top - bottom) // pixel, 1))
+    projection = _cropped(np.array(region_data.window_matrix, np.float64), rectangle, region.width,
+                          region.height)
+    request = build(scene, size, (0, scene.panoptes.viewport_samples), region_data.view_matrix,
+                    projection, ['Combined'], warn)
     # The picture is shown while it refines.
     request['live'] = True
     # Limits are for final renders; a view goes on until it has its samples.
     for limit in ('time_budget', 'noise_threshold'):
         request['settings'].pop(limit, None)
-    return request
+    return request, (left, bottom, right - left, top - bottom)

@@ -10,14 +10,19 @@ import json
 import sys
 import threading
 import traceback
+import weakref
 
 from . import native
+from .refinement import Turns
 from .sync import Mirror, SceneSync
 
 # Held by whoever writes to the native scene or renders from it.
 _lock = threading.RLock()
 _mirror = None
-_previews = {}
+
+# The jobs of all 3D Views, and the objects behind the views.
+turns = Turns()
+viewports = weakref.WeakSet()
 
 # Final renders share one, so that the frames of an animation send only what differs.
 final_sync = SceneSync()
@@ -50,18 +55,9 @@ def exclusive(wait):
             _lock.release()
 
 
-def note_preview(viewport, job):
-    """Remember the running job of a 3D View (None when it has ended)."""
-    if job is None:
-        _previews.pop(id(viewport), None)
-    else:
-        _previews[id(viewport)] = job
-
-
-def cancel_previews():
-    """Stop the jobs of all 3D Views: the engine renders one at a time, in order."""
-    for job in list(_previews.values()):
-        job.cancel()
+def viewport_warnings():
+    """Return what the 3D Views have to tell the artist, each sentence once."""
+    return list(dict.fromkeys(text for view in list(viewports) for text in view.warnings()))
 
 
 def sentence(error):
@@ -72,7 +68,9 @@ def sentence(error):
     module = sys.modules.get('panoptes_native') or sys.modules.get(f'{__package__}.panoptes_native')
     known = (native.Unavailable,) + ((module.Error,) if module is not None else ())
     if isinstance(error, known):
-        return native.one_line(error)
+        text = native.one_line(error)
+        # The native side words its errors as the rest of a line that begins with a name.
+        return text[:1].upper() + text[1:] + ('' if text.endswith(('.', '!', '?')) else '.')
     traceback.print_exception(type(error), error, error.__traceback__)
     return (f'Panoptes stopped on an unexpected error ({type(error).__name__}: '
             f'{native.one_line(error)}); please report it with the console output.')

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The 3D View in Rendered shading: one `Viewport` per engine object.
 
-Edits are synchronised in `update`; `draw` starts a job whenever the view or the scene has changed,
-draws the newest complete picture, and asks for a redraw when there is a newer one. A job that has
-not shown anything yet is left to finish its first sample for a while, so that something appears
-while the view turns.
+Edits are synchronised in `update`; `draw` begins a new picture whenever the view or the scene is
+another, draws the newest samples, and asks for a redraw when there are more. A picture that has not
+shown anything yet is left to finish its first sample for a while, so that something appears while the
+view turns.
 """
-
-import time
 
 import bpy
 
 from . import compat, requests, session
+from .refinement import Refinement
 from .sync import SceneSync
 
 # Seconds that `draw` waits for the first sample of a new view.
@@ -20,32 +19,43 @@ _FIRST_SAMPLE_WAIT = 0.25
 _GRACE = 1.0
 _POLL_INTERVAL = 0.03
 
-# Viewports of the same view layer see the same edits, so they share what is known of the scene.
+# Viewports that show the same objects of the same view layer see the same edits, so they share what
+# is known of the scene.
 _syncs = {}
 
 
-def _sync_for(depsgraph):
-    key = (compat.stable_key(depsgraph.scene), depsgraph.view_layer.name)
+def _sync_for(depsgraph, space):
+    key = (compat.stable_key(depsgraph.scene), depsgraph.view_layer.name,
+           space.as_pointer() if space is not None and _has_own_objects(space) else 0)
     return _syncs.setdefault(key, SceneSync())
 
 
+def _has_own_objects(space):
+    return space.local_view is not None or space.use_local_collections
+
+
+def _space(context):
+    space = context.space_data
+    return space if space is not None and space.type == 'VIEW_3D' else None
+
+
 class Viewport:
-    """The running job and the last picture of one 3D View."""
+    """The refining picture of one 3D View, and the last that it has shown."""
 
     def __init__(self):
         self._synced = False
-        self._changed = True
-        self._key = None
-        self._job = None
-        self._job_started = 0.0
-        # Samples in the picture that was fetched last.
-        self._shown = 0
-        self._samples = 1
+        # The state of the native scene that this view shows.
+        self._state = None
+        self._picture = None
+        # What is shown, and where in the region; and where the picture that is refined belongs.
         self._pixels = None
+        self._rectangle = self._rectangle_ahead = (0, 0, 1, 1)
         self._failure = ''
-        self._warnings = ()
+        self._sync_warnings = ()
+        self._request_warnings = ()
         # Whether a timer waits for news.
         self.polling = False
+        session.viewports.add(self)
 
     def update(self, context, depsgraph):
         """Bring the native scene up to date; called after every edit."""
@@ -54,7 +64,6 @@ class Viewport:
                 # A final render has the engine; all is read again afterwards.
                 self._synced = False
                 return
-            # A running job has its own copy of the scene; `draw` decides when it is outdated.
             self._failure = ''
             try:
                 self._sync(context, depsgraph)
@@ -62,145 +71,130 @@ class Viewport:
                 self._failure = session.sentence(error)
 
     def _sync(self, context, depsgraph):
-        space = context.space_data
-        local = space if space is not None and space.type == 'VIEW_3D' else None
+        space, mirror = _space(context), session.mirror()
+        sync = _sync_for(depsgraph, space)
+        if mirror.owner is not sync:
+            session.turns.interrupt_unborn()
         incremental, self._synced = self._synced, False
-        report = _sync_for(depsgraph).sync(session.mirror(), depsgraph, local, incremental)
-        self._synced, self._changed = True, True
-        self._warnings = tuple(report.warnings)
+        report = sync.sync(mirror, depsgraph, space, incremental)
+        self._synced, self._state = True, mirror.state()
+        self._sync_warnings = tuple(report.warnings)
 
     def draw(self, engine, context, depsgraph):
         """Draw the newest picture of the current view and keep rendering."""
         with session.exclusive(wait=False) as held:
             if not held:
                 engine.update_stats('Panoptes', 'Waiting for the final render to finish')
-                self._draw_last(context)
+                self._draw_last()
                 _redraw_later(engine, self, 0.5)
                 return
             try:
                 self._draw(engine, context, depsgraph)
             except Exception as error:  # whatever it was, Blender must go on
-                self._cancel()
+                self.close()
                 self._failure = session.sentence(error)
         if self._failure:
             engine.update_stats('Panoptes', self._failure)
-            self._draw_last(context)
+        self._draw_last()
 
     def _draw(self, engine, context, depsgraph):
-        if self._failure and not self._view_changed(engine, context, depsgraph):
+        warnings = []
+        request, rectangle = requests.viewport(
+            depsgraph, context.region, context.region_data, _space(context),
+            max(engine.get_preview_pixel_size(depsgraph.scene), 1), warnings.append)
+        if self._failure and self._shows(request):
             return
         self._failure = ''
-        mirror = session.mirror()
-        if not self._synced or mirror.owner is not _sync_for(depsgraph):
-            self._synced = False
+        self._request_warnings = tuple(warnings)
+        if not self._synced:
             self._sync(context, depsgraph)
         # A sample of an outdated view is better than the one before it.
         self._advance()
-        if self._view_changed(engine, context, depsgraph) or self._changed:
-            self._start(engine, context, depsgraph, mirror)
+        if not self._shows(request):
+            self._begin(request, rectangle)
+        if not self._picture.is_complete() and not self._picture.is_running():
+            self._start(context, depsgraph)
         self._advance()
-        self._draw_last(context)
-        if self._job is not None or self._changed:
-            engine.update_stats('Panoptes', self._status())
+        engine.update_stats('Panoptes', self._status())
+        if not self._picture.is_complete():
             _redraw_later(engine, self, _POLL_INTERVAL)
-        else:
-            engine.update_stats('Panoptes', self._idle_status())
 
-    def _status(self):
-        if self._job is not None and not self._shown:
-            return self._job.status()
-        return f'Sample {self._shown}/{self._samples}'
+    def _shows(self, request):
+        """Tell whether the picture is one of this request and of the scene as it is."""
+        return self._picture is not None and self._picture.key == _key(request, self._state)
 
-    def _idle_status(self):
-        return f'{self._samples} samples' if not self._warnings else self._warnings[0]
-
-    # Jobs
-
-    def _view_key(self, engine, context, depsgraph):
-        data, scene = context.region_data, depsgraph.scene
-        settings = scene.panoptes
-        return (self._size(engine, context, scene), tuple(map(tuple, data.view_matrix)),
-                tuple(map(tuple, data.window_matrix)), settings.viewport_samples, settings.seed,
-                settings.method, settings.bounces, settings.force_all_effects,
-                settings.realtime.shadow_resolution, settings.realtime.soft_shadows,
-                scene.render.filter_size, scene.render.film_transparent)
-
-    def _view_changed(self, engine, context, depsgraph):
-        return self._key != self._view_key(engine, context, depsgraph)
-
-    @staticmethod
-    def _size(engine, context, scene):
-        pixel = max(engine.get_preview_pixel_size(scene), 1)
-        return max(context.region.width // pixel, 1), max(context.region.height // pixel, 1)
-
-    def _start(self, engine, context, depsgraph, mirror):
-        if self._job is not None and not self._job.samples_ready():
-            if time.monotonic() - self._job_started < _GRACE:
+    def _begin(self, request, rectangle):
+        """Make the request's picture the one to refine, unless the last deserves its first sample."""
+        last = self._picture
+        if last is not None and last.is_running():
+            if not last.samples and last.seconds_running() < _GRACE:
                 return
-        self._cancel()
-        warnings = []
-        scene = depsgraph.scene
-        request = requests.viewport(scene, self._size(engine, context, scene), context.region_data,
-                                    warnings.append)
-        self._key = self._view_key(engine, context, depsgraph)
-        self._samples = max(scene.panoptes.viewport_samples, 1)
-        self._job = mirror.engine.render(request)
-        session.note_preview(self, self._job)
-        self._job_started = time.monotonic()
-        self._changed, self._shown = False, 0
-        self._warnings = tuple(dict.fromkeys((*self._warnings, *warnings)))
-        while not self._job.samples_ready() and not self._job.wait(0.005):
-            if time.monotonic() - self._job_started > _FIRST_SAMPLE_WAIT:
-                break
+            last.interrupt()
+        self._picture = Refinement(request, _key(request, self._state))
+        self._rectangle_ahead = rectangle
 
-    def samples_done(self):
-        """Return how many complete samples the running job has; 0 without a job."""
-        return self._job.samples_ready() if self._job is not None else 0
-
-    def is_rendering(self):
-        """Tell whether there is a job."""
-        return self._job is not None
-
-    def has_news(self):
-        """Tell whether a redraw would show something new."""
-        if self._job is None:
-            return False
-        return self._job.wait(0.0) or self.samples_done() > self._shown
+    def _start(self, context, depsgraph):
+        """Start the picture's job if it is this view's turn."""
+        picture, mirror = self._picture, session.mirror()
+        if not session.turns.take(picture):
+            return
+        if mirror.owner is not _sync_for(depsgraph, _space(context)):
+            # Another view or a final render has written its own version of the scene.
+            self._sync(context, depsgraph)
+        picture.start(mirror.engine)
+        picture.wait(_FIRST_SAMPLE_WAIT)
 
     def _advance(self):
-        """Fetch the newest picture; let go of the job when it is done."""
-        if self._job is None:
+        """Fetch the newest samples."""
+        picture = self._picture
+        if picture is None:
             return
-        done = self._job.wait(0.0)
-        if done:
-            job = self._forget_job()
-            job.finish()
-            if job.cancelled():
-                # A final render needed the engine.
-                self._changed = True
-            else:
-                self._pixels = job.read('Combined')
-        elif self.samples_done() > self._shown:
-            self._shown = self.samples_done()
-            self._pixels = self._job.read('Combined')
+        picture.advance()
+        if picture.samples:
+            self._pixels, self._rectangle = picture.pixels, self._rectangle_ahead
 
-    def _forget_job(self):
-        job, self._job = self._job, None
-        session.note_preview(self, None)
-        return job
+    def _status(self):
+        picture = self._picture
+        if picture.is_complete():
+            text = f'{picture.samples} samples'
+        elif picture.is_running():
+            text = picture.status()
+        else:
+            text = f'{picture.status()}, waiting for another 3D View'
+        warnings = self.warnings()
+        if not warnings:
+            return text
+        more = f' ({len(warnings) - 1} more in the Render properties)' if len(warnings) > 1 else ''
+        return f'{text} | {warnings[0]}{more}'
 
-    def _cancel(self):
-        job = self._forget_job()
-        if job is not None:
-            job.cancel()
+    def warnings(self):
+        """Return sentences about what this view cannot show."""
+        of_job = self._picture.warnings if self._picture is not None else ()
+        return list(dict.fromkeys((*self._request_warnings, *self._sync_warnings, *of_job)))
 
-    def _draw_last(self, context):
+    def is_rendering(self):
+        """Tell whether there are samples to come."""
+        return self._picture is not None and not self._picture.is_complete() and not self._failure
+
+    def has_news(self):
+        """Tell whether a redraw would show or start something."""
+        picture = self._picture
+        return picture.has_news() or not picture.is_running() and session.turns.is_free(picture)
+
+    def _draw_last(self):
         if self._pixels is not None:
-            compat.draw_pixels(self._pixels, context.region.width, context.region.height)
+            compat.draw_pixels(self._pixels, *self._rectangle)
 
     def close(self):
         """Stop the running job."""
-        self._cancel()
+        if self._picture is not None:
+            self._picture.interrupt()
+
+
+def _key(request, state):
+    """Return what tells pictures apart: the request's values and the state of the scene."""
+    return (state, tuple((name, value.tobytes() if hasattr(value, 'tobytes') else repr(value))
+                         for name, value in request.items()))
 
 
 def _redraw_later(engine, viewport, interval):

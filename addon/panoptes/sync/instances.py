@@ -13,13 +13,12 @@ from .. import compat
 from . import lights, visibility
 
 
-# Objects that would be seen, by what to call them.
+# Objects that would be seen, by what to call them. Grease Pencil drawings are drawn over the picture by
+# Blender itself.
 _LEFT_OUT = {
     'VOLUME': 'a volume',
     'CURVES': 'hair',
     'POINTCLOUD': 'a point cloud',
-    'GPENCIL': 'a Grease Pencil drawing',
-    'GREASEPENCIL': 'a Grease Pencil drawing',
 }
 
 
@@ -130,8 +129,10 @@ class Walk:
         drawn = finite & (geometry >= 0)
         slot_index = np.array([place.slot_set for place in places], np.int32)[rows]
         bits = np.array([place.visibility for place in places], np.uint8)[rows]
+        # By name, since each lamp has its own sequence of samples and Blender's order may change.
+        shining = sorted(np.flatnonzero(finite & is_light), key=lambda row: places[rows[row]].name)
         found_lights = [lights.describe(places[rows[row]].light, matrices[row], self._warn)
-                        for row in np.flatnonzero(finite & is_light)]
+                        for row in shining]
         return InstanceList(self._geometry, geometry[drawn], matrices[drawn],
                             list(self._slot_sets), slot_index[drawn], bits[drawn], found_lights)
 

@@ -7,6 +7,8 @@ scene. They all write through one `Mirror`, which remembers what was sent and se
 
 import numpy as np
 
+from .summary import summary
+
 
 class Mirror:
     """The native scene as last written. All ids are positive and belong to keys chosen by callers.
@@ -27,8 +29,17 @@ class Mirror:
         self._world = None
         self._instances = None
 
+    def state(self):
+        """Return a hashable summary of all that is held; equal states give equal pictures."""
+        return hash(summary((self._meshes, self._materials, self._images, self._lights, self._world,
+                             self._instances)))
+
     def id_of(self, kind, key):
-        """Return the id of `key` among 'mesh', 'material' or 'image' things."""
+        """Return the id of `key` among 'mesh', 'material' or 'image' things.
+
+        It stays the same for as long as the mirror lives, so that a thing that is hidden and shown
+        again leads to the same `state`.
+        """
         full = (kind, key)
         if full not in self._ids:
             self._ids[full] = self._next_id
@@ -123,8 +134,6 @@ class Mirror:
             for unused in [i for i in held if i not in wanted]:
                 remove(unused)
                 del held[unused]
-        gone = set(self._ids.values()) - meshes - materials - images
-        self._ids = {key: i for key, i in self._ids.items() if i not in gone}
 
 
 def _frozen(facts):

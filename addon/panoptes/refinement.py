@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A picture that gains samples, and can be interrupted and go on where it was.
+
+The native engine renders one job at a time, but there may be several 3D Views. Each has a
+`Refinement`; `Turns` says whose job runs: a view that has nothing to show yet goes before views that
+only become smoother, and those go on one after the other.
+"""
+
+import threading
+import time
+
+
+class Refinement:
+    """The picture of one request. `pixels` is float32[H, W, 4] as soon as `samples` is not 0."""
+
+    def __init__(self, request, key):
+        self.key = key
+        self.pixels = None
+        self.samples = 0
+        self.warnings = ()
+        self._request = request
+        self._first, self._last = request['samples']
+        # What earlier jobs have made.
+        self._base = None
+        self._base_samples = 0
+        self._job = None
+        self._started = 0.0
+
+    @property
+    def wanted(self):
+        """How many samples the finished picture has."""
+        return self._last - self._first
+
+    def is_complete(self):
+        """Tell whether all samples are there."""
+        return self.samples >= self.wanted
+
+    def is_running(self):
+        """Tell whether a job works on it."""
+        return self._job is not None and not self._job.wait(0.0)
+
+    def seconds_running(self):
+        """Return for how long the job has been working."""
+        return time.monotonic() - self._started
+
+    def has_news(self):
+        """Tell whether `advance` would change something."""
+        if self._job is None:
+            return False
+        return self._job.wait(0.0) or self._base_samples + self._job.samples_ready() > self.samples
+
+    def start(self, engine):
+        """Queue a job for the samples that are missing."""
+        self._base, self._base_samples = self.pixels, self.samples
+        samples = (self._first + self.samples, self._last)
+        self._job = engine.render({**self._request, 'samples': samples})
+        self._started = time.monotonic()
+
+    def wait(self, seconds):
+        """Wait for the first sample, or as long as told."""
+        while not self._job.samples_ready() and not self._job.wait(0.005):
+            if self.seconds_running() > seconds:
+                break
+
+    def advance(self):
+        """Fetch the newest picture; let go of a job that has ended. Raises what the job raised."""
+        job = self._job
+        if job is None:
+            return
+        ended = job.wait(0.0)
+        if ended:
+            self._job = None
+            job.finish()
+            self.warnings = tuple(job.stats().get('warnings', ()))
+        if ended or self._base_samples + job.samples_ready() > self.samples:
+            self._fetch(job)
+
+    def interrupt(self):
+        """Stop the job, keeping what it has made; `start` goes on from there."""
+        job, self._job = self._job, None
+        if job is not None:
+            job.cancel()
+            self._fetch(job)
+
+    def _fetch(self, job):
+        count, before = job.samples_ready(), -1
+        if not count:
+            return
+        # The picture may grow while it is read.
+        while count != before:
+            before, pixels, count = count, job.read('Combined'), job.samples_ready()
+        total = self._base_samples + count
+        if self._base_samples:
+            pixels = (self._base * self._base_samples + pixels * count) / total
+        self.pixels, self.samples = pixels, total
+
+    def cancel(self):
+        """Stop the job if there is one; may be called from any thread."""
+        job = self._job
+        if job is not None:
+            job.cancel()
+
+    def status(self):
+        """Return what happens now, in a few words."""
+        if self._job is not None and not self.samples:
+            return self._job.status().capitalize()
+        return f'Sample {self.samples}/{self.wanted}'
+
+
+class Turns:
+    """Whose job may run. Holds refinements that have been given a turn."""
+
+    def __init__(self):
+        self._lock = threading.Lock()
+        self._running = []
+
+    def _others(self, refinement):
+        with self._lock:
+            self._running = [r for r in self._running if r.is_running()]
+            return [r for r in self._running if r is not refinement]
+
+    def is_free(self, refinement):
+        """Tell whether `take` would succeed."""
+        return all(not refinement.samples and other.samples for other in self._others(refinement))
+
+    def take(self, refinement):
+        """Tell whether a refinement may start its job; interrupts those that can wait."""
+        if not self.is_free(refinement):
+            return False
+        for other in self._others(refinement):
+            other.interrupt()
+        with self._lock:
+            self._running = [r for r in self._running if r is not refinement] + [refinement]
+        return True
+
+    def interrupt_unborn(self):
+        """Interrupt jobs without a sample: they may not have read their scene, which will change."""
+        for other in self._others(None):
+            if not other.samples:
+                other.interrupt()
+
+    def cancel_all(self):
+        """Stop all jobs."""
+        for other in self._others(None):
+            other.cancel()

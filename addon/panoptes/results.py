@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the pictures of a native job to the passes of Blender's render result."""
+
+from . import compat, passes
+
+
+class LayerResult:
+    """The render result of one view layer, begun and ended exactly once."""
+
+    def __init__(self, engine, layer_name, size):
+        self._engine = engine
+        self._result = engine.begin_result(0, 0, *size, layer=layer_name)
+        self.pass_names = [p.name for p in self._passes() if p.name in passes.BY_NAME]
+
+    def _passes(self):
+        return self._result.layers[0].passes if self._result.layers else ()
+
+    def fill(self, job, names):
+        """Copy the job's last complete sample to these passes."""
+        for target in self._passes():
+            if target.name in names:
+                compat.write_pass(target, job.read(target.name))
+
+    def show(self, job):
+        """Show the combined picture so far."""
+        self.fill(job, ('Combined',))
+        self._engine.update_result(self._result)
+
+    def end(self, cancel=False):
+        """Hand the result to Blender."""
+        self._engine.end_result(self._result, cancel=cancel)

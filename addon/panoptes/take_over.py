@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator that carries a scene's settings for Cycles over to Panoptes."""
+
+import bpy
+
+from . import compat
+
+_DISABLED = ("The Cycles add-on is disabled, so its settings cannot be read; nothing was taken over. "
+             'Enable it in the Preferences and try again.')
+
+
+def _words(names):
+    """Return 'a, b and c'."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def take_over(scene):
+    """Copy what has a counterpart from `scene.cycles` to `scene.panoptes`.
+
+    Returns the artist's names of what was copied and of what has been changed in Cycles but has no
+    counterpart here. Raises AttributeError where the Cycles add-on is disabled.
+    """
+    cycles, ours = scene.cycles, scene.panoptes
+    ours.samples = cycles.samples
+    ours.viewport_samples = max(cycles.preview_samples, 1)
+    ours.first_sample = compat.cycles_first_sample(cycles)
+    ours.noise_threshold = cycles.adaptive_threshold if cycles.use_adaptive_sampling else 0.0
+    ours.time_budget = cycles.time_limit
+    ours.seed = cycles.seed
+    ours.bounces = cycles.max_bounces
+    ours.exposure = cycles.film_exposure
+    scene.render.filter_size = cycles.filter_width
+    taken = ['samples', 'viewport samples', 'noise threshold', 'time limit', 'seed', 'bounces',
+             'exposure', 'pixel filter width']
+    # Transparent film is one switch of Blender's for both engines.
+    return taken, list(_without_counterpart(scene, cycles))
+
+
+def _without_counterpart(scene, cycles):
+    """Yield names of settings that would change Cycles' picture, and which we do not have."""
+    if cycles.pixel_filter_type != 'BLACKMAN_HARRIS':
+        yield f'{cycles.pixel_filter_type.title()} filter (Blackman-Harris is used)'
+    for kind in ('diffuse', 'glossy', 'transmission'):
+        # A limit of its own matters where the total would allow more.
+        if getattr(cycles, f'{kind}_bounces') < cycles.max_bounces:
+            yield f'{kind} bounces'
+    if cycles.sample_clamp_direct > 0.0 or cycles.sample_clamp_indirect > 0.0:
+        yield 'clamping'
+    if cycles.blur_glossy > 0.0:
+        yield 'filter glossy'
+    if not (cycles.caustics_reflective and cycles.caustics_refractive):
+        yield 'no caustics'
+    if cycles.use_denoising:
+        yield 'denoising'
+    if cycles.use_fast_gi:
+        yield 'fast GI'
+    if cycles.use_animated_seed:
+        yield 'animated seed'
+    if scene.render.film_transparent and cycles.film_transparent_glass:
+        yield 'transparent glass'
+    if scene.render.use_motion_blur:
+        yield 'motion blur'
+
+
+class PANOPTES_OT_take_over_cycles(bpy.types.Operator):
+    """Copy samples, limits, bounces, exposure and pixel filter from this scene's settings for Cycles"""
+
+    bl_idname = 'panoptes.take_over_cycles'
+    bl_label = "Take over Cycles' Settings"
+    bl_options = {'REGISTER', 'UNDO'}
+
+    def execute(self, context):
+        """Copy, and report in a sentence."""
+        if not hasattr(context.scene, 'cycles'):
+            self.report({'WARNING'}, _DISABLED)
+            return {'CANCELLED'}
+        taken, missing = take_over(context.scene)
+        rest = f'; without a counterpart: {_words(missing)}' if missing else ''
+        self.report({'INFO'}, f'Taken over: {_words(taken)}{rest}.')
+        return {'FINISHED'}

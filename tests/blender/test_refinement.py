@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures that refine and go on; whose turn it is among several 3D Views; when a scene is the same."""
+
+import bpy
+import numpy as np
+import pytest
+
+from building import Sync, add_object, quad
+from panoptes.refinement import Refinement, Turns
+from recorder import Recorder
+
+
+class SlowJob:
+    """A job whose samples come when the test says so; sample k is a picture of the number k."""
+
+    def __init__(self, request):
+        self.first, self.last = request['samples']
+        self.done = 0
+        self.stopped = False
+
+    def samples_ready(self):
+        return self.done
+
+    def wait(self, seconds):
+        return self.stopped or self.done == self.last - self.first
+
+    def read(self, name):
+        mean = np.arange(self.first, self.first + self.done).mean()
+        return np.full((2, 3, 4), mean, np.float32)
+
+    def cancel(self):
+        self.stopped = True
+
+    def finish(self):
+        """Nothing failed."""
+
+    def status(self):
+        return 'compiling'
+
+    def stats(self):
+        return {'warnings': ['A warning.']}
+
+
+class SlowEngine:
+    """Notes its jobs."""
+
+    def __init__(self):
+        self.jobs = []
+
+    def render(self, request):
+        self.jobs.append(SlowJob(request))
+        return self.jobs[-1]
+
+
+@pytest.fixture
+def engine():
+    return SlowEngine()
+
+
+def picture(first=0, last=8):
+    return Refinement({'samples': (first, last)}, 'key')
+
+
+class TestRefinement:
+    def test_grows_and_ends(self, engine):
+        found = picture()
+        found.start(engine)
+        assert found.status() == 'Compiling' and not found.has_news()
+        engine.jobs[0].done = 3
+        assert found.has_news()
+        found.advance()
+        assert found.samples == 3 and found.pixels[0, 0, 0] == 1.0 and not found.has_news()
+        engine.jobs[0].done = 8
+        found.advance()
+        assert found.is_complete() and not found.is_running() and found.warnings == ('A warning.',)
+
+    def test_goes_on_where_it_was_interrupted(self, engine):
+        found = picture(last=10)
+        for done in (3, 2):
+            found.start(engine)
+            engine.jobs[-1].done = done
+            found.interrupt()
+        found.start(engine)
+        assert (engine.jobs[2].first, engine.jobs[2].last) == (5, 10)
+        engine.jobs[2].done = 5
+        found.advance()
+        # The mean of samples 0 to 9, each counted once.
+        assert found.is_complete() and found.pixels == pytest.approx(4.5)
+
+    def test_interrupted_before_the_first_sample(self, engine):
+        found = picture()
+        found.start(engine)
+        found.interrupt()
+        assert found.samples == 0 and found.pixels is None and not found.is_running()
+
+    def test_cancelled_by_a_final_render(self, engine):
+        found = picture()
+        found.start(engine)
+        engine.jobs[0].done = 2
+        found.cancel()
+        found.advance()
+        assert found.samples == 2 and not found.is_running() and not found.is_complete()
+
+
+class TestTurns:
+    def start(self, turns, engine, found):
+        assert turns.take(found)
+        found.start(engine)
+
+    def test_a_view_with_nothing_to_show_goes_first(self, engine):
+        turns, smooth, new = Turns(), picture(), picture()
+        self.start(turns, engine, smooth)
+        # The first sample is never taken away.
+        assert not turns.take(new)
+        engine.jobs[0].done = 1
+        smooth.advance()
+        self.start(turns, engine, new)
+        assert engine.jobs[0].stopped and not smooth.is_running() and smooth.samples == 1
+
+    def test_views_that_refine_wait_for_each_other(self, engine):
+        turns, one, other = Turns(), picture(), picture()
+        self.start(turns, engine, one)
+        engine.jobs[0].done = 1
+        one.advance()
+        self.start(turns, engine, other)
+        engine.jobs[1].done = 1
+        other.advance()
+        assert not turns.is_free(one) and not turns.take(one)
+        engine.jobs[1].done = 8
+        assert turns.is_free(one)
+        self.start(turns, engine, one)
+        assert engine.jobs[2].first == 1
+
+    def test_a_scene_that_changes_under_an_unborn_job(self, engine):
+        turns, one = Turns(), picture()
+        self.start(turns, engine, one)
+        turns.interrupt_unborn()
+        assert engine.jobs[0].stopped
+        self.start(turns, engine, one)
+        engine.jobs[1].done = 1
+        one.advance()
+        turns.interrupt_unborn()
+        assert not engine.jobs[1].stopped
+
+    def test_all_stop_for_a_final_render(self, engine):
+        turns, one = Turns(), picture()
+        self.start(turns, engine, one)
+        turns.cancel_all()
+        assert engine.jobs[0].stopped
+
+
+class TestState:
+    """What tells a 3D View whether its picture still shows the scene."""
+
+    def test_equal_scenes_have_equal_states(self, scene, recorder):
+        sync, other = Sync(recorder), Sync(Recorder())
+        thing = add_object(quad(materials=1))
+        sync.full(), other.full()
+        before = sync.mirror.state()
+        assert before == other.mirror.state()
+        thing.location.x = 1.0
+        bpy.context.view_layer.update()
+        sync.full()
+        moved = sync.mirror.state()
+        assert moved != before
+        thing.location.x = 0.0
+        bpy.context.view_layer.update()
+        sync.full()
+        assert sync.mirror.state() == before
+
+    def test_hiding_and_showing_again(self, scene, recorder):
+        sync = Sync(recorder)
+        add_object(quad('Other'), 'Other')
+        thing = add_object(quad(materials=1))
+        sync.full()
+        before = sync.mirror.state()
+        for hidden in (True, False):
+            thing.hide_viewport = hidden
+            bpy.context.view_layer.update()
+            sync.full()
+            assert (sync.mirror.state() == before) != hidden
+
+    def test_lamps_materials_and_the_world_count(self, scene, recorder):
+        sync = Sync(recorder)
+        light = bpy.data.lights.new('Lamp', 'POINT')
+        add_object(light, 'Lamp')
+        material = bpy.data.materials.new('Material')
+        mesh = quad()
+        mesh.materials.append(material)
+        add_object(mesh)
+        world = scene.world = bpy.data.worlds.new('World')
+        material.use_nodes = world.use_nodes = False
+        states = set()
+        for change in (lambda: None, lambda: setattr(light, 'energy', 5.0),
+                       lambda: setattr(material, 'diffuse_color', (1, 0, 0, 1)),
+                       lambda: setattr(world, 'color', (0, 1, 0))):
+            change()
+            bpy.context.view_layer.update()
+            sync.full()
+            states.add(sync.mirror.state())
+        assert len(states) == 4
