@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What node_atlas.py shows: the cases of each group, and how far each row of the table may be from Cycles.
+
+Needs no Blender to be read; the functions that build nodes get a node_atlas.Tree.
+"""
+
+import math
+from typing import Callable, NamedTuple
+
+# Pixels along a tile, and how values become light.
+PIXELS = 16
+SCALE, OFFSET = 0.05, 1.0
+
+
+class Light(NamedTuple):
+    """How the tiles of a group are lit: `values` shine by themselves, the others lie on a curved patch."""
+
+    values: bool = True
+    curved: bool = False
+    world: tuple = (0.0, 0.0, 0.0)
+    suns: tuple = ()  # (Euler angles, strength)
+    samples: int = 1  # of Cycles
+    panoptes_samples: int = 1
+
+
+class Case(NamedTuple):
+    """One tile: `build(tree)` returns the socket that is shown; rows of the table may have several cases."""
+
+    row: str
+    name: str
+    build: Callable
+
+
+class Bound(NamedTuple):
+    """How far a row may be from Cycles, and why that far: relative RMSE, and the largest error of a pixel."""
+
+    rmse: float
+    largest: float
+    reason: str
+
+
+SUN = ((0.5, 0.35, 0.0), 3.0)
+GROUPS = {
+    "values": Light(),
+    "textures": Light(),
+    "images": Light(),
+    "closures": Light(values=False, curved=True, suns=(SUN,), samples=64),
+    "world": Light(values=False, curved=True, world=(0.8, 1.0, 1.2), samples=256),
+}
+
+# --- values ---------------------------------------------------------------------------------------------
+
+MATH = """ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD POWER LOGARITHM SQRT INVERSE_SQRT ABSOLUTE EXPONENT MINIMUM MAXIMUM
+LESS_THAN GREATER_THAN SIGN COMPARE SMOOTH_MIN SMOOTH_MAX ROUND FLOOR CEIL TRUNC FRACT MODULO WRAP SNAP PINGPONG SINE
+COSINE TANGENT ARCSINE ARCCOSINE ARCTANGENT ARCTAN2 SINH COSH TANH RADIANS DEGREES""".split()
+VECTOR_MATH = """ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD CROSS_PRODUCT PROJECT REFLECT REFRACT FACEFORWARD DOT_PRODUCT
+DISTANCE LENGTH SCALE NORMALIZE ABSOLUTE MINIMUM MAXIMUM FLOOR CEIL FRACTION MODULO WRAP SNAP SINE COSINE
+TANGENT""".split()
+BLEND = """MIX DARKEN MULTIPLY BURN LIGHTEN SCREEN DODGE ADD OVERLAY SOFT_LIGHT LINEAR_LIGHT DIFFERENCE SUBTRACT DIVIDE HUE
+SATURATION COLOR VALUE""".split()
+
+
+def node(kind, low=-1.0, high=1.0, output=0, row=None, prepare=None, **settings):
+    """A case of one node whose inputs run over low..high; `prepare(tree, node)` may link some before."""
+
+    def build(tree):
+        made = tree.add(kind, **settings)
+        if prepare:
+            prepare(tree, made)
+        tree.vary(made, low, high)
+        shown = [socket for socket in made.outputs if socket.enabled]
+        return shown[output] if isinstance(output, int) else made.outputs[output]
+
+    words = [kind, *map(str, settings.values()), str(output)]
+    return Case(row or kind, " ".join(words), build)
+
+
+def placed(name="Vector", low=0.0, high=1.0):
+    """A `prepare` that feeds one input with the place on the tile."""
+    return lambda tree, made: tree.link(tree.place(low, high), made.inputs[name])
+
+
+def ramp(interpolation, mode="RGB"):
+    """A Color Ramp of three stops."""
+
+    def prepare(tree, made):
+        found = made.color_ramp
+        found.color_mode = mode
+        setattr(found, "interpolation" if mode == "RGB" else "hue_interpolation", interpolation)
+        found.elements[0].color, found.elements[0].position = (1, 0, 0, 1), 0.13
+        found.elements.new(0.41).color = (0, 0.5, 1, 0.5)
+
+    return node("ValToRGB", -0.1, 1.1, row="ColorRamp", prepare=prepare)._replace(name=f"ColorRamp {mode} {interpolation}")
+
+
+def curve(kind):
+    """A curve node, bent."""
+
+    def prepare(tree, made):
+        for index, found in enumerate(made.mapping.curves):
+            found.points.new(0.3, 0.6 - 0.1 * index)
+        made.mapping.update()
+
+    return node(kind, -0.2, 1.2, prepare=prepare)
+
+
+def values():
+    """Converters, colours, vectors, and what reads the surface."""
+    cases = [node("Math", -2.3, 2.9, operation=operation) for operation in MATH]
+    cases.append(node("Math", -2.3, 2.9, operation="SUBTRACT", use_clamp=True))
+    cases += [node("VectorMath", -2.3, 2.9, operation=operation) for operation in VECTOR_MATH]
+    cases += [node("MixRGB", -0.1, 1.2, blend_type=mode) for mode in BLEND]
+    cases += [node("Mix", -0.4, 1.3, data_type="RGBA", blend_type=mode, clamp_factor=False, clamp_result=mode == "ADD")
+              for mode in BLEND]
+    cases += [node("Mix", -1.1, 2.3, data_type="VECTOR", factor_mode=mode) for mode in ("UNIFORM", "NON_UNIFORM")]
+    cases.append(node("Mix", -1.1, 2.3, data_type="FLOAT"))
+    for kind in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP"):
+        for data in ("FLOAT", "FLOAT_VECTOR"):
+            cases += [node("MapRange", 0.1, 4.1, interpolation_type=kind, data_type=data, clamp=clamp) for clamp in (True, False)]
+    cases += [node("Clamp", clamp_type=kind) for kind in ("MINMAX", "RANGE")]
+    for mode in ("RGB", "HSV", "HSL"):
+        cases += [node("SeparateColor", 0.0, 1.1, output, mode=mode) for output in range(3)]
+        cases.append(node("CombineColor", 0.0, 1.1, mode=mode))
+    cases += [node(kind, -0.1, 1.1, row=kind) for kind in ("SeparateRGB", "SeparateHSV", "CombineRGB", "CombineHSV")]
+    cases += [node(kind) for kind in ("SeparateXYZ", "CombineXYZ")]
+    cases += [ramp(kind) for kind in ("LINEAR", "CONSTANT", "EASE", "CARDINAL", "B_SPLINE")]
+    cases += [ramp("FAR", "HSV"), ramp("CW", "HSL")]
+    cases += [curve("RGBCurve"), curve("VectorCurve"), curve("FloatCurve")]
+    cases += [node(kind, -0.1, 1.3) for kind in ("Invert", "Gamma", "BrightContrast", "HueSaturation", "RGBToBW")]
+    cases += [node("Blackbody", 500.0, 13000.0, prepare=lambda tree, made: None), node("Wavelength", 370.0, 790.0)]
+    for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
+        cases += [node("Mapping", 0.2, 1.5, vector_type=kind),
+                  node("Mapping", 0.2, 1.5, vector_type=kind, prepare=mapping_constants)._replace(name=f"Mapping {kind} constant")]
+    for kind in ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"):
+        cases.append(node("VectorRotate", -1.2, 1.3, rotation_type=kind, invert=kind == "Y_AXIS"))
+    for kind in ("POINT", "VECTOR", "NORMAL"):
+        for start, end in (("OBJECT", "WORLD"), ("WORLD", "OBJECT"), ("CAMERA", "WORLD"), ("WORLD", "CAMERA")):
+            cases.append(node("VectorTransform", vector_type=kind, convert_from=start, convert_to=end))
+    for output in ("Position", "Normal", "Tangent", "True Normal", "Incoming", "Parametric", "Backfacing"):
+        cases.append(node("NewGeometry", output=output, row="Geometry"))
+    for output in ("Generated", "Normal", "UV", "Object", "Camera", "Window", "Reflection"):
+        cases.append(node("TexCoord", output=output))
+    cases += [node("CameraData", output=output) for output in ("View Vector", "View Z Depth", "View Distance")]
+    cases.append(node("ObjectInfo", output="Location"))
+    cases += [node("Tangent", direction_type="RADIAL", axis=axis) for axis in "XYZ"]
+    cases.append(node("Tangent", direction_type="UV_MAP"))
+    cases += [node("Fresnel", 1.1, 2.0), node("LayerWeight", 0.1, 0.9, 0), node("LayerWeight", 0.1, 0.9, 1)]
+    cases += [node("Normal", output=0), node("Normal", output=1)]
+    cases += [node("LightPath", output=output) for output in ("Is Camera Ray", "Ray Depth")]
+    cases.append(node("LightFalloff", 1.0, 2.0))
+    return cases
+
+
+def mapping_constants(tree, made):
+    """Links the vector alone: all that moves it is constant."""
+    tree.link(tree.place(-1.1, 1.4), made.inputs["Vector"])
+    for name, numbers in (("Location", (0.3, -0.2, 0.5)), ("Rotation", (0.4, 0.9, -0.3)), ("Scale", (1.4, 0.7, -1.2))):
+        if made.inputs[name].enabled:
+            made.inputs[name].default_value = numbers
+
+
+# --- procedural textures --------------------------------------------------------------------------------
+
+
+def textures():
+    """Textures that are computed from a place."""
+    at = placed(low=-1.7, high=2.1)
+    cases = [node("TexChecker", 0.1, 1.0, output, prepare=scaled(at, 2.9)) for output in (0, 1)]
+    for kind in ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL"):
+        cases.append(node("TexGradient", prepare=placed(low=-0.9, high=1.1), gradient_type=kind))
+    return cases
+
+
+def scaled(prepare, scale):
+    """A `prepare` that also sets the input Scale."""
+
+    def both(tree, made):
+        prepare(tree, made)
+        made.inputs["Scale"].default_value = scale
+
+    return both
+
+
+# --- images ---------------------------------------------------------------------------------------------
+
+
+def images():
+    """Image Texture and Environment Texture."""
+    return []
+
+
+# --- shaders --------------------------------------------------------------------------------------------
+
+
+def shader(kind, row=None, prepare=None, name=None, **inputs):
+    """A case of one shader node; `inputs` by name, with _ for spaces."""
+
+    def build(tree):
+        made = tree.add(kind)
+        for key, value in inputs.items():
+            if hasattr(made, key):
+                setattr(made, key, value)
+            else:
+                made.inputs[key.replace("_", " ")].default_value = value
+        if prepare:
+            prepare(tree, made)
+        return made.outputs[0]
+
+    return Case(row or kind, name or f"{kind} {inputs}", build)
+
+
+ORANGE = (0.8, 0.4, 0.15, 1.0)
+
+
+def closures():
+    """Shaders under one sun, or one world: the same for both."""
+    cases = [shader("BsdfDiffuse", Color=ORANGE, Roughness=roughness) for roughness in (0.0, 0.4, 1.0)]
+    cases += [shader("BsdfGlossy", distribution="GGX", Color=ORANGE, Roughness=roughness) for roughness in (0.2, 0.5, 0.9)]
+    cases += [shader("BsdfPrincipled", f"Principled {key}", Base_Color=ORANGE, **{key: value})
+              for key, values in PRINCIPLED.items() for value in values]
+    cases += [shader("BsdfTransparent", Color=ORANGE), shader("Emission", Color=ORANGE, Strength=2.0)]
+    cases += [shader("BsdfGlass", distribution="GGX", Color=ORANGE, Roughness=0.3, IOR=1.45),
+              shader("BsdfRefraction", distribution="GGX", Color=ORANGE, Roughness=0.3, IOR=1.45)]
+    cases += [mixed("BsdfDiffuse", "BsdfGlossy", 0.3), mixed("BsdfDiffuse", "Emission", 0.3),
+              mixed("BsdfTransparent", "BsdfDiffuse", 0.6), added()]
+    return cases
+
+
+PRINCIPLED = {"Base_Color": (ORANGE,), "Roughness": (0.1, 0.3, 1.0), "Specular": (0.0, 1.0), "Specular_Tint": (1.0,),
+              "Metallic": (0.5, 1.0), "Subsurface": (0.5,), "Sheen": (1.0,), "Sheen_Tint": (0.0,), "Clearcoat": (1.0,),
+              "Clearcoat_Roughness": (0.4,), "Transmission": (0.5, 1.0), "Alpha": (0.4,), "Emission_Strength": (1.5,),
+              "IOR": (2.0,), "Anisotropic": (0.7,)}
+
+
+def mixed(first, second, factor):
+    """Mix Shader of two shaders."""
+
+    def build(tree):
+        made = tree.add("MixShader")
+        made.inputs[0].default_value = factor
+        for kind, socket in ((first, made.inputs[1]), (second, made.inputs[2])):
+            part = tree.add(kind)
+            if kind == "BsdfGlossy":
+                part.distribution = "GGX"
+                part.inputs["Roughness"].default_value = 0.3
+            tree.link(part.outputs[0], socket)
+        return made.outputs[0]
+
+    return Case("MixShader", f"MixShader {first} {second}", build)
+
+
+def added():
+    """Add Shader of diffuse and emission."""
+
+    def build(tree):
+        made = tree.add("AddShader")
+        for kind, socket in (("BsdfDiffuse", made.inputs[0]), ("Emission", made.inputs[1])):
+            tree.link(tree.add(kind).outputs[0], socket)
+        return made.outputs[0]
+
+    return Case("AddShader", "AddShader", build)
+
+
+# --- all ------------------------------------------------------------------------------------------------
+
+
+def cases(group):
+    """The cases of a group, in the order of its tiles: rows from the bottom, each from the left."""
+    return {"values": values, "textures": textures, "images": images, "closures": closures, "world": closures}[group]()
+
+
+def side(count):
+    """How many tiles a row of the picture has."""
+    return math.ceil(math.sqrt(count))
+
+
+# Where a row may be further from Cycles than rounding, and why.
+BOUNDS = {
+}
+ROUNDING = Bound(1e-3, 5e-3, "")
+
+
+def bound(group, row):
+    """How far a row of a group may be from Cycles."""
+    return BOUNDS.get((group, row)) or BOUNDS.get(row) or ROUNDING
