@@ -16,20 +16,34 @@ PRINCIPLED_SOCKETS = {
     'specular': 'Specular',
     'specular_tint': 'Specular Tint',
     'transmission': 'Transmission',
+    'transmission_roughness': 'Transmission Roughness',
     'ior': 'IOR',
     'emission': 'Emission',
-    'clearcoat': 'Clearcoat',
-    'clearcoat_roughness': 'Clearcoat Roughness',
+    'coat': 'Clearcoat',
+    'coat_roughness': 'Clearcoat Roughness',
+    'coat_normal': 'Clearcoat Normal',
     'sheen': 'Sheen',
+    'sheen_tint': 'Sheen Tint',
+    'subsurface': 'Subsurface',
+    'subsurface_color': 'Subsurface Color',
+    'anisotropic': 'Anisotropic',
+    'base_color': 'Base Color',
 }
 if PRINCIPLED_GENERATION == 4:
     PRINCIPLED_SOCKETS.update({
         'specular': 'Specular IOR Level',
         'transmission': 'Transmission Weight',
         'emission': 'Emission Color',
-        'clearcoat': 'Coat Weight',
-        'clearcoat_roughness': 'Coat Roughness',
+        'coat': 'Coat Weight',
+        'coat_roughness': 'Coat Roughness',
+        'coat_ior': 'Coat IOR',
+        'coat_tint': 'Coat Tint',
+        'coat_normal': 'Coat Normal',
         'sheen': 'Sheen Weight',
+        'sheen_roughness': 'Sheen Roughness',
+        'subsurface': 'Subsurface Weight',
+        'diffuse_roughness': 'Diffuse Roughness',
+        'thin_film': 'Thin Film Thickness',
     })
 
 
@@ -57,6 +71,13 @@ def uses_nodes(owner):
     # From 5.0 on (lamps: 5.2) the switch is always on, and reading it is deprecated.
     since = (5, 2, 0) if isinstance(owner, bpy.types.Light) else (5, 0, 0)
     return VERSION >= since or owner.use_nodes
+
+
+def displacement_method(material):
+    """Return how a material is displaced: 'BUMP', 'DISPLACEMENT' or 'BOTH'."""
+    # A property of Blender's own since 4.1, of Cycles' before.
+    owner = material if hasattr(material, 'displacement_method') else getattr(material, 'cycles', None)
+    return getattr(owner, 'displacement_method', 'BUMP')
 
 
 # Data-blocks

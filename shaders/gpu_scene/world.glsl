@@ -1,5 +1,6 @@
 // What generated world code calls; it defines vec3 evaluate_world(vec3 direction).
 #include "base/color.glsl"
+#include "base/fresnel.glsl"
 #include "gpu_scene/view_shared.h"
 
 layout(binding = 6) uniform samplerBuffer material_params;

@@ -146,7 +146,7 @@ class TestFacts:
     def test_plain(self, scene):
         facts = Tree().compile().facts
         assert facts == {'alpha': False, 'emission': False, 'normal_map': False, 'glossy': True,
-                         'transmission': False, 'attributes': []}
+                         'transmission': False, 'layers': False, 'attributes': []}
 
     def test_alpha(self, scene):
         tree = Tree()

@@ -102,12 +102,12 @@ TEST(World, AWhiteFurnaceIsWhite) {
     for (const char* ior : {"1.0", "1.5"})
       for (const char* roughness : {"0.0", "1.0"})
         EXPECT_NEAR(
-            in_furnace(fmt::format("closure_refraction(surface, vec3(1.0), vec3(1.0), {}, {}, "
+            in_furnace(fmt::format("closure_refraction(hit, surface, vec3(1.0), vec3(1.0), {}, {}, "
                                    "hit.normal);\n",
                                    roughness, ior),
                        nv),
             1, 5e-3);  // transmission is kept in eight bits
-    EXPECT_NEAR(in_furnace("closure_glass(surface, vec3(1.0), vec3(1.0), 0.0, 1.0, hit.normal);\n",
+    EXPECT_NEAR(in_furnace("closure_glass(hit, surface, vec3(1.0), vec3(1.0), 0.0, 1.0, hit.normal);\n",
                            nv),
                 1, 5e-3);
   }

@@ -165,6 +165,8 @@ def build(group):
         made = bpy.data.objects.new(case.name, mesh)
         made.location = (index % side, index // side, 0.0)
         scene.collection.objects.link(made)
+        # Neighbours must not stand in the world's light, nor be seen in each other.
+        made.visible_shadow = made.visible_diffuse = made.visible_glossy = made.visible_transmission = False
         made.material_slots[0].link = "OBJECT"
         made.material_slots[0].material = (value_material if light.values else closure_material)(case)
     view = bpy.data.cameras.new("camera")
@@ -177,6 +179,6 @@ def build(group):
     # Both engines look through the pixels' centres.
     scene.render.filter_size = scene.cycles.filter_width = 0.01
     scene.view_settings.view_transform = "Standard"
-    scene.cycles.max_bounces = 0
+    scene.cycles.max_bounces = 1
     scene.cycles.use_denoising = False
     bpy.context.view_layer.update()

@@ -44,8 +44,10 @@ GROUPS = {
     "values": Light(),
     "textures": Light(),
     "images": Light(),
-    "closures": Light(values=False, curved=True, suns=(SUN,), samples=64),
-    "world": Light(values=False, curved=True, world=(0.8, 1.0, 1.2), samples=256),
+    "bump": Light(values=False, curved=True, suns=(SUN,), samples=16),
+    "alpha": Light(values=False, curved=True, suns=(SUN,), world=(0.2, 0.3, 0.4), samples=1024, panoptes_samples=64),
+    "closures": Light(values=False, curved=True, suns=(SUN,), samples=64, panoptes_samples=64),
+    "world": Light(values=False, curved=True, world=(0.8, 1.0, 1.2), samples=256, panoptes_samples=64),
 }
 
 # --- values ---------------------------------------------------------------------------------------------
@@ -127,7 +129,7 @@ def values():
     cases += [ramp("FAR", "HSV"), ramp("CW", "HSL")]
     cases += [curve("RGBCurve"), curve("VectorCurve"), curve("FloatCurve")]
     cases += [node(kind, -0.1, 1.3) for kind in ("Invert", "Gamma", "BrightContrast", "HueSaturation", "RGBToBW")]
-    cases += [node("Blackbody", 500.0, 13000.0, prepare=lambda tree, made: None), node("Wavelength", 370.0, 790.0)]
+    cases += [node("Blackbody", 700.0, 13000.0), node("Wavelength", 370.0, 790.0)]
     for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
         cases += [node("Mapping", 0.2, 1.5, vector_type=kind),
                   node("Mapping", 0.2, 1.5, vector_type=kind, prepare=mapping_constants)._replace(name=f"Mapping {kind} constant")]
@@ -216,20 +218,92 @@ def closures():
     """Shaders under one sun, or one world: the same for both."""
     cases = [shader("BsdfDiffuse", Color=ORANGE, Roughness=roughness) for roughness in (0.0, 0.4, 1.0)]
     cases += [shader("BsdfGlossy", distribution="GGX", Color=ORANGE, Roughness=roughness) for roughness in (0.2, 0.5, 0.9)]
-    cases += [shader("BsdfPrincipled", f"Principled {key}", Base_Color=ORANGE, **{key: value})
-              for key, values in PRINCIPLED.items() for value in values]
-    cases += [shader("BsdfTransparent", Color=ORANGE), shader("Emission", Color=ORANGE, Strength=2.0)]
+    cases += [shader("BsdfPrincipled", f"Principled {row}", **{"Base_Color": ORANGE, **inputs}) for row, inputs in PRINCIPLED]
+    cases.append(shader("Emission", Color=ORANGE, Strength=2.0))
+    cases += [shader("BsdfVelvet", Color=ORANGE, Sigma=sigma) for sigma in (0.4, 1.0)]
     cases += [shader("BsdfGlass", distribution="GGX", Color=ORANGE, Roughness=0.3, IOR=1.45),
               shader("BsdfRefraction", distribution="GGX", Color=ORANGE, Roughness=0.3, IOR=1.45)]
-    cases += [mixed("BsdfDiffuse", "BsdfGlossy", 0.3), mixed("BsdfDiffuse", "Emission", 0.3),
-              mixed("BsdfTransparent", "BsdfDiffuse", 0.6), added()]
+    cases += [mixed("BsdfDiffuse", "BsdfGlossy", 0.3), mixed("BsdfDiffuse", "Emission", 0.3), added()]
     return cases
 
 
-PRINCIPLED = {"Base_Color": (ORANGE,), "Roughness": (0.1, 0.3, 1.0), "Specular": (0.0, 1.0), "Specular_Tint": (1.0,),
-              "Metallic": (0.5, 1.0), "Subsurface": (0.5,), "Sheen": (1.0,), "Sheen_Tint": (0.0,), "Clearcoat": (1.0,),
-              "Clearcoat_Roughness": (0.4,), "Transmission": (0.5, 1.0), "Alpha": (0.4,), "Emission_Strength": (1.5,),
-              "IOR": (2.0,), "Anisotropic": (0.7,)}
+def alpha():
+    """What lets light straight through."""
+    return [shader("BsdfTransparent", Color=(0.6, 0.6, 0.6, 1.0)), shader("BsdfTransparent", "tinted Transparent", Color=ORANGE),
+            mixed("BsdfTransparent", "BsdfDiffuse", 0.6),
+            shader("BsdfPrincipled", "Principled Alpha", Base_Color=ORANGE, Alpha=0.4)]
+
+
+def bumped(row, low=0.0, high=1.0, invert=False, **inputs):
+    """A diffuse surface whose normal is a Bump node's over a wavy height."""
+
+    def build(tree):
+        made, surface = tree.add("Bump", invert=invert), tree.add("BsdfDiffuse")
+        for key, value in inputs.items():
+            made.inputs[key].default_value = value
+        tree.link(waves(tree), made.inputs["Height"])
+        tree.link(made.outputs[0], surface.inputs["Normal"])
+        return surface.outputs[0]
+
+    return Case(row, f"{row} {invert} {inputs}", build)
+
+
+def waves(tree):
+    """A height that waves over the surface's place."""
+    made, product = tree.add("VectorMath", operation="SINE"), tree.add("VectorMath", operation="DOT_PRODUCT")
+    product.inputs[1].default_value = (0.05, 0.05, 0.05)
+    tree.link(tree.place(0.0, 11.0), made.inputs[0])
+    tree.link(made.outputs[0], product.inputs[0])
+    return product.outputs["Value"]
+
+
+def displaced(tree):
+    """A Displacement node on the output, drawn as bumps."""
+    made, surface = tree.add("Displacement"), tree.add("BsdfDiffuse")
+    made.inputs["Scale"].default_value = 0.7
+    tree.link(waves(tree), made.inputs["Height"])
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+    tree.link(made.outputs[0], output.inputs["Displacement"])
+    return surface.outputs[0]
+
+
+def twice_bumped(tree):
+    """A Bump node that starts from another's normal."""
+    first, second, surface = tree.add("Bump"), tree.add("Bump"), tree.add("BsdfDiffuse")
+    tree.link(waves(tree), first.inputs["Height"])
+    tree.link(tree.component(tree.place(0.0, 0.4, 1), 2), second.inputs["Height"])
+    tree.link(first.outputs[0], second.inputs["Normal"])
+    tree.link(second.outputs[0], surface.inputs["Normal"])
+    return surface.outputs[0]
+
+
+def coat_bumped(tree):
+    """A clear coat with a normal of its own."""
+    made, surface = tree.add("Bump"), tree.add("BsdfPrincipled")
+    surface.inputs["Clearcoat"].default_value, surface.inputs["Clearcoat Roughness"].default_value = 1.0, 0.3
+    tree.link(waves(tree), made.inputs["Height"])
+    tree.link(made.outputs[0], surface.inputs["Clearcoat Normal"])
+    return surface.outputs[0]
+
+
+def bumps():
+    """Normals from heights."""
+    return [bumped("Bump"), bumped("Bump", Strength=0.4), bumped("Bump", Distance=0.3), bumped("Bump", invert=True),
+            Case("Bump on Bump", "Bump on Bump", twice_bumped), Case("Displacement", "Displacement", displaced),
+            Case("Clearcoat Normal", "Clearcoat Normal", coat_bumped)]
+
+
+PRINCIPLED = [
+    ("Base Color", {}), ("Base Color", {"Base_Color": (0.1, 0.2, 0.9, 1.0)}),
+    ("Roughness", {"Roughness": 0.1}), ("Roughness", {"Roughness": 0.3}), ("Roughness", {"Roughness": 1.0}),
+    ("Specular", {"Specular": 0.0}), ("Specular", {"Specular": 1.0}), ("Specular Tint", {"Specular": 1.0, "Specular_Tint": 1.0}),
+    ("Metallic", {"Metallic": 0.5}), ("Metallic", {"Metallic": 1.0}),
+    ("Sheen", {"Sheen": 1.0, "Sheen_Tint": 0.0}), ("Sheen Tint", {"Sheen": 1.0, "Sheen_Tint": 1.0}),
+    ("Clearcoat", {"Clearcoat": 1.0}), ("Clearcoat Roughness", {"Clearcoat": 1.0, "Clearcoat_Roughness": 0.4}),
+    ("Transmission", {"Transmission": 0.5}), ("Transmission", {"Transmission": 1.0}), ("IOR", {"Transmission": 0.5, "IOR": 2.0}),
+    ("Emission", {"Emission": ORANGE, "Emission_Strength": 1.5}),
+    ("Subsurface", {"Subsurface": 0.5, "Subsurface_Color": (0.9, 0.1, 0.1, 1.0)}), ("Anisotropic", {"Anisotropic": 0.7}),
+]
 
 
 def mixed(first, second, factor):
@@ -266,7 +340,8 @@ def added():
 
 def cases(group):
     """The cases of a group, in the order of its tiles: rows from the bottom, each from the left."""
-    return {"values": values, "textures": textures, "images": images, "closures": closures, "world": closures}[group]()
+    return {"values": values, "textures": textures, "images": images, "bump": bumps, "alpha": alpha,
+            "closures": closures, "world": closures}[group]()
 
 
 def side(count):

@@ -138,6 +138,18 @@ vec4 node_table(int first, int last, float position, bool interpolate)
     return mix(value, param(first + min(low + 1, last)), place - float(low));
 }
 ''')
+_add('node_extended_table', '''
+// Goes on in a straight line beyond both ends.
+vec4 node_extended_table(int first, int last, float position, bool interpolate)
+{
+    vec4 value = node_table(first, last, position, interpolate);
+    if (position < 0.0)
+        return value + (param(first + 1) - value) * (position * float(last));
+    if (position > 1.0)
+        return value + (value - param(first + last - 1)) * ((position - 1.0) * float(last));
+    return value;
+}
+''', 'node_table')
 _add('node_rgb_to_hsv', '''
 vec3 node_rgb_to_hsv(vec3 c)
 {
@@ -203,23 +215,76 @@ vec3 node_gamma(vec3 color, float gamma)
     return mix(color, pow(max(color, vec3(1e-30)), vec3(gamma)), greaterThan(color, vec3(0.0)));
 }
 ''')
-_add('node_fresnel', '''
-float node_fresnel(float cosine, float ior)
+_add('node_rotate', '''
+vec3 node_rotate(vec3 v, vec3 axis, float angle)
 {
-    float c = abs(cosine);
-    float square = ior * ior - 1.0 + c * c;
-    if (square <= 0.0)
-        return 1.0;
-    float g = sqrt(square);
-    float a = (g - c) / (g + c);
-    float b = ((g + c) * c - 1.0) / ((g - c) * c + 1.0);
-    return 0.5 * a * a * (1.0 + b * b);
+    float size = length(axis);
+    if (size == 0.0)
+        return v;
+    axis /= size;
+    float c = cos(angle);
+    return v * c + cross(axis, v) * sin(angle) + axis * dot(axis, v) * (1.0 - c);
 }
 ''')
-_add('node_object_normal', '''
-vec3 node_object_normal(Hit hit)
+
+# Spaces. `point` is 1 for places and 0 for directions.
+_add('node_normal_to_object', '''
+vec3 node_normal_to_object(Hit hit, vec3 n)
 {
-    return normalize(transpose(fetch_transform(hit.instance, vec3(0.0)).linear) * hit.normal);
+    return safe_normalize(transpose(fetch_transform(hit.instance, vec3(0.0)).linear) * n, n);
+}
+''')
+_add('node_normal_to_world', '''
+vec3 node_normal_to_world(Hit hit, vec3 n)
+{
+    return safe_normalize(cofactors(fetch_transform(hit.instance, vec3(0.0)).linear) * n * hit.handedness, n);
+}
+''')
+_add('node_object_to_world', '''
+vec3 node_object_to_world(Hit hit, vec3 v, float point)
+{
+    Transform t = fetch_transform(hit.instance, vec3(0.0));
+    return t.linear * v + t.translation * point;
+}
+''')
+_add('node_world_to_object', '''
+vec3 node_world_to_object(Hit hit, vec3 v, float point)
+{
+    Transform t = fetch_transform(hit.instance, vec3(0.0));
+    float determinant = dot(t.linear[0], cross(t.linear[1], t.linear[2]));
+    if (determinant == 0.0)
+        return vec3(0.0);
+    return transpose(cofactors(t.linear)) * (v - t.translation * point) / determinant;
+}
+''')
+_add('node_camera_axes', '''
+// To the right, upwards and forwards.
+mat3 node_camera_axes()
+{
+    vec3 forwards = view.axis.xyz;
+    bool perspective = view.filtering.z > 0.5;
+    vec3 right = perspective ? view.ray_direction_dx.xyz : view.ray_origin_dx.xyz;
+    right = normalize(right - forwards * dot(right, forwards));
+    return mat3(right, cross(right, forwards), forwards);
+}
+''')
+_add('node_to_camera', '''
+vec3 node_to_camera(vec3 v, float point)
+{
+    return transpose(node_camera_axes()) * (v - view.world_origin.xyz * point);
+}
+''', 'node_camera_axes')
+_add('node_from_camera', '''
+vec3 node_from_camera(vec3 v, float point)
+{
+    return node_camera_axes() * v + view.world_origin.xyz * point;
+}
+''', 'node_camera_axes')
+_add('node_window', '''
+vec3 node_window(vec3 v, float point)
+{
+    vec4 clip = view.clip_from_relative * vec4(v - view.world_origin.xyz * point, 1.0);
+    return vec3(clip.xy / clip.w * 0.5 + 0.5, 0.0);
 }
 ''')
 _add('node_equirectangular', '''

@@ -5,7 +5,7 @@ from mathutils import Euler, Matrix
 
 from .. import compat
 from .compiler import value_node
-from .inputs import affine
+from .spaces import affine
 from .values import Value
 
 # Colour of a texture that cannot be found, as everywhere in Blender.
