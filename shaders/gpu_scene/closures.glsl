@@ -17,6 +17,7 @@ struct Surface {
   vec3 transparency;         // what passes straight through
   vec3 emission;             // radiance
   vec3 normal;               // unit once finished
+  vec3 smooth_normal;        // the interpolated one, as displacement leaves it
   float coat, coat_roughness;  // a second, clear specular lobe; roughness as pack_coat() has it
   vec3 coat_normal;
   vec3 sheen;
@@ -31,7 +32,7 @@ const float SHEEN_SCHLICK = -1.0;
 
 Surface empty_surface() {
   return Surface(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0),
-                 vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                 vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                  0.0, 0.0, 0.0);
 }
 
@@ -43,8 +44,9 @@ float quotient(float sum, float weight) { return weight > 0.0 ? finite(sum / wei
 // Divides the merged quantities by their weights. Alpha is stochastic, so what a pixel keeps is
 // what the surface does where it is not transparent.
 void finish_surface(Hit hit, inout Surface s) {
+  s.smooth_normal = safe_normalize(s.smooth_normal, hit.normal);
   s.normal = keep_reflection_above(hit.geometric_normal, hit.view,
-                                   safe_normalize(s.normal, hit.normal));
+                                   safe_normalize(s.normal, s.smooth_normal));
   s.coat_normal = keep_reflection_above(hit.geometric_normal, hit.view,
                                         safe_normalize(s.coat_normal, hit.normal));
   // Two diffuse models do not blend: the one that reflects more stands for both.

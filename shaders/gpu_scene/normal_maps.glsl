@@ -26,30 +26,44 @@ vec3 finish_normal_map(Hit hit, vec3 n, float strength) {
   return safe_normalize(mix(hit.normal, n, max(strength, 0.0)), hit.normal);
 }
 
-// The direction in which the first texture coordinate grows, square to the normal as the mesh has it.
-vec3 tangent_of_edges(Hit hit, vec2 d1, vec2 d2) {
-  float handedness = d1.x * d2.y - d1.y * d2.x < 0.0 ? -1.0 : 1.0;
-  vec3 n = hit.normal_unflipped;
-  vec3 t = (hit.edge1 * d2.y - hit.edge2 * d1.y) * handedness;
-  // Coordinates without an area give no direction; Cycles then takes the object's X axis.
-  if (d1.x * d2.y == d1.y * d2.x) t = fetch_transform(hit.instance, vec3(0.0)).linear[0];
+// Normals between object and world space: as far as directions go, whatever the scale.
+vec3 normal_to_object(mat3 linear, vec3 n) { return safe_normalize(transpose(linear) * n, n); }
+vec3 normal_to_world(mat3 linear, vec3 n) {
+  return safe_normalize(cofactors(linear) * n * determinant_sign(linear), n);
+}
+vec3 direction_to_object(mat3 linear, vec3 v) {
+  return transpose(cofactors(linear)) * v * determinant_sign(linear);
+}
+
+// The direction in which the first texture coordinate grows, object space, square to `n`.
+vec3 tangent_of_edges(Hit hit, mat3 linear, vec3 n, vec2 d1, vec2 d2) {
+  float orientation = d1.x * d2.y - d1.y * d2.x < 0.0 ? -1.0 : 1.0;
+  vec3 t = direction_to_object(linear, (hit.edge1 * d2.y - hit.edge2 * d1.y) * orientation);
+  // Coordinates without an area give no direction; Cycles then takes the X axis.
+  if (d1.x * d2.y == d1.y * d2.x) t = vec3(1.0, 0.0, 0.0);
+  t = safe_normalize(t, vec3(0.0));
   return safe_normalize(t - n * dot(n, t), vec3(0.0));
 }
 
+// As Cycles has it: the tangent goes to world space like a normal.
 vec3 uv_tangent(Hit hit, int uv_attribute) {
   vec2 d1, d2;
-  return uv_edges(hit, uv_attribute, d1, d2) ? tangent_of_edges(hit, d1, d2) : vec3(0.0);
+  if (!uv_edges(hit, uv_attribute, d1, d2)) return vec3(0.0);
+  mat3 linear = fetch_transform(hit.instance, vec3(0.0)).linear;
+  vec3 n = normal_to_object(linear, hit.normal_unflipped);
+  return normal_to_world(linear, tangent_of_edges(hit, linear, n, d1, d2));
 }
 
+// The map is read in object space, where it was baked; the result goes on as a normal.
 vec3 normal_map_tangent(Hit hit, int uv_attribute, vec3 color, float strength) {
   vec2 d1, d2;
   if (!uv_edges(hit, uv_attribute, d1, d2)) return hit.normal;
-  float handedness = d1.x * d2.y - d1.y * d2.x < 0.0 ? -1.0 : 1.0;
-  vec3 n = hit.normal_unflipped;
-  vec3 t = tangent_of_edges(hit, d1, d2);
-  vec3 b = cross(n, t) * handedness * hit.handedness;
+  mat3 linear = fetch_transform(hit.instance, vec3(0.0)).linear;
+  vec3 n = normal_to_object(linear, hit.normal_unflipped);
+  vec3 t = tangent_of_edges(hit, linear, n, d1, d2);
+  vec3 b = cross(n, t) * (d1.x * d2.y - d1.y * d2.x < 0.0 ? -1.0 : 1.0);
   vec3 c = color * 2.0 - 1.0;
-  return finish_normal_map(hit, c.x * t + c.y * b + c.z * n, strength);
+  return finish_normal_map(hit, normal_to_world(linear, c.x * t + c.y * b + c.z * n), strength);
 }
 
 vec3 normal_map_object(Hit hit, vec3 color, float strength) {
@@ -86,13 +100,23 @@ Hit shifted_hit(Hit hit, vec3 offset) {
   return hit;
 }
 
-// The normal of `n`'s surface raised by a height whose values here and at the two offsets are given
-// (Mikkelsen 2010).
-vec3 bump_normal(Hit hit, vec3 n, vec3 dx, vec3 dy, float height, float height_x, float height_y,
-                 float distance, float strength) {
+vec3 raised_normal(vec3 n, vec3 dx, vec3 dy, vec3 heights, float distance) {
   vec3 rx = cross(dy, n), ry = cross(n, dx);
   float determinant = dot(dx, rx);
-  vec3 gradient = (height_x - height) * rx + (height_y - height) * ry;
-  vec3 bumped = abs(determinant) * n - distance * sign(determinant) * gradient;
-  return safe_normalize(mix(n, safe_normalize(bumped, n), max(strength, 0.0)), n);
+  vec3 gradient = (heights.y - heights.x) * rx + (heights.z - heights.x) * ry;
+  return safe_normalize(abs(determinant) * n - distance * sign(determinant) * gradient, n);
+}
+
+// The normal of `n`'s surface raised by a height whose values here and at the two offsets are given
+// (Mikkelsen 2010).
+vec3 bump_normal(Hit hit, vec3 n, vec3 dx, vec3 dy, vec3 heights, float distance, float strength) {
+  vec3 raised = raised_normal(n, dx, dy, heights, distance);
+  return keep_reflection_above(hit.geometric_normal, hit.view,
+                               safe_normalize(mix(n, raised, max(strength, 0.0)), n));
+}
+
+// A height in the object's own unit, metres.
+float height_in_world(Hit hit, float height) {
+  mat3 linear = fetch_transform(hit.instance, vec3(0.0)).linear;
+  return height * dot(linear * normal_to_object(linear, hit.normal), hit.normal);
 }

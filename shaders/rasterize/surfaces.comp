@@ -37,7 +37,7 @@ void main() {
 
   imageStore(out_position, pixel, vec4(hit.position, hit.bulge));
   imageStore(out_normals, pixel,
-             uvec4(pack_unit(surface.normal), pack_unit(hit.normal),
+             uvec4(pack_unit(surface.normal), pack_unit(surface.smooth_normal),
                    pack_unit(hit.geometric_normal),
                    pack_grazing(surface.grazing, surface.specular_ior)));
   imageStore(out_diffuse, pixel, vec4(surface.diffuse, surface.diffuse_roughness));

@@ -22,6 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Each of the four switches by a bit of its own.
+rasterize::GBufferOptions surfaces(int bits) {
+  return {.glossy = bool(bits & 1),
+          .emission = bool(bits & 2),
+          .transmission = bool(bits & 4),
+          .layers = bool(bits & 8)};
+}
+
 // Calls everything that generated code may call.
 constexpr const char* kEverything =
     "void evaluate_material(const Hit hit, inout Surface surface) {\n"

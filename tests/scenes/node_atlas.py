@@ -11,6 +11,7 @@ import random
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 import node_cases
 
@@ -66,7 +67,8 @@ class Tree:
             if socket.is_linked or not socket.enabled or not hasattr(socket, "default_value"):
                 continue
             if turn < 2 and socket.type in ("VALUE", "VECTOR", "RGBA"):
-                vector = self.place(low, high, turn)
+                # Not quite alike, so that nothing hangs on whether two inputs are equal.
+                vector = self.place(low, high - 0.07 * turn * (high - low), turn)
                 self.link(self.component(vector, turn) if socket.type == "VALUE" else vector, socket)
                 turn += 1
             elif socket.type == "VALUE":
@@ -117,14 +119,24 @@ def empty_material(case):
 
 
 def quad():
-    """A unit square facing +z, UVs 0..1."""
+    """A unit square facing +z of four triangles, none of whose edges meets a pixel's centre; UVs 0..1."""
     mesh = bpy.data.meshes.new("quad")
-    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
-    mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", [0, 0, 1, 0, 1, 1, 0, 1])
+    points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.53, 0.48, 0)]
+    mesh.from_pydata(points, [], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    map_from_above(mesh)
     return mesh
 
 
-def patch(cells=24):
+def map_from_above(mesh):
+    """Gives the mesh its x and y as UV map."""
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    places = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertices.foreach_get("co", places)
+    mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", places.reshape(-1, 3)[corners, :2].ravel())
+
+
+def patch(cells=23):
     """The top of a sphere over the unit square, smooth, whose rim is 70 degrees steep; UVs 0..1."""
     mesh, side = bpy.data.meshes.new("patch"), cells + 1
     u, v = np.meshgrid(np.linspace(0, 1, side), np.linspace(0, 1, side))
@@ -135,9 +147,7 @@ def patch(cells=24):
              for row in range(cells) for column in range(cells)]
     mesh.from_pydata(points.tolist(), [], faces)
     mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    mesh.uv_layers.new(name="UVMap").data.foreach_set("uv", points[corners, :2].astype(np.float32).ravel())
+    map_from_above(mesh)
     return mesh
 
 
@@ -161,9 +171,12 @@ def build(group):
         scene.collection.objects.link(made)
     mesh = patch() if light.curved else quad()
     mesh.materials.append(None)
+    # What the mesh has less, every object has more: object space is not world space.
+    turned = Matrix.Rotation(0.7, 4, (0.3, -0.5, 0.8)) @ Matrix.Diagonal((0.5, 2.0, 0.8, 1.0))
+    mesh.transform(turned.inverted())
     for index, case in enumerate(cases):
         made = bpy.data.objects.new(case.name, mesh)
-        made.location = (index % side, index // side, 0.0)
+        made.matrix_world = Matrix.Translation((index % side, index // side, 0.0)) @ turned
         scene.collection.objects.link(made)
         # Neighbours must not stand in the world's light, nor be seen in each other.
         made.visible_shadow = made.visible_diffuse = made.visible_glossy = made.visible_transmission = False

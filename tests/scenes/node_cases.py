@@ -257,9 +257,9 @@ def waves(tree):
     return product.outputs["Value"]
 
 
-def displaced(tree):
+def displaced(tree, space="OBJECT"):
     """A Displacement node on the output, drawn as bumps."""
-    made, surface = tree.add("Displacement"), tree.add("BsdfDiffuse")
+    made, surface = tree.add("Displacement", space=space), tree.add("BsdfDiffuse")
     made.inputs["Scale"].default_value = 0.7
     tree.link(waves(tree), made.inputs["Height"])
     output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
@@ -290,6 +290,7 @@ def bumps():
     """Normals from heights."""
     return [bumped("Bump"), bumped("Bump", Strength=0.4), bumped("Bump", Distance=0.3), bumped("Bump", invert=True),
             Case("Bump on Bump", "Bump on Bump", twice_bumped), Case("Displacement", "Displacement", displaced),
+            Case("Displacement", "Displacement WORLD", lambda tree: displaced(tree, "WORLD")),
             Case("Clearcoat Normal", "Clearcoat Normal", coat_bumped)]
 
 

@@ -14,12 +14,13 @@ def _height(compiler, create):
     """Write the function of a height; return expressions of it here, along dx and along dy.
 
     `create()` returns the height as an expression, writing to the function's own lines. Returns
-    (offset along dx, offset along dy, 'height, height, height').
+    (offset along dx, offset along dy, vec3 of the three heights).
     """
     name = compiler.function('height', create)
     x = compiler.declare('vector', 'bump_offset_x(hit)').code
     y = compiler.declare('vector', f'bump_offset_y(hit, {x})').code
-    return x, y, f'{name}(hit), {name}(shifted_hit(hit, {x})), {name}(shifted_hit(hit, {y}))'
+    return x, y, (f'vec3({name}(hit), {name}(shifted_hit(hit, {x})), '
+                  f'{name}(shifted_hit(hit, {y})))')
 
 
 @value_node('BUMP')
@@ -54,8 +55,10 @@ def write_displacement(compiler, material, source):
 
     def height():
         parts = [use.get(name, 'float') for name in ('Height', 'Midlevel', 'Scale')]
-        return '({} - {}) * {}'.format(*parts)
+        offset = '({} - {}) * {}'.format(*parts)
+        return f'height_in_world(hit, {offset})' if source.node.space == 'OBJECT' else offset
 
     x, y, heights = _height(compiler, height)
-    bumped = f'bump_normal(hit, hit.normal, {x}, {y}, {heights}, 1.0, 1.0)'
-    compiler.normal = compiler.declare('vector', bumped).code
+    compiler.normal = compiler.declare(
+        'vector', f'bump_normal(hit, hit.normal, {x}, {y}, {heights}, 1.0, 1.0)').code
+    compiler.statement(f'surface.smooth_normal = {compiler.normal};')

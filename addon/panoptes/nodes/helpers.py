@@ -228,18 +228,6 @@ vec3 node_rotate(vec3 v, vec3 axis, float angle)
 ''')
 
 # Spaces. `point` is 1 for places and 0 for directions.
-_add('node_normal_to_object', '''
-vec3 node_normal_to_object(Hit hit, vec3 n)
-{
-    return safe_normalize(transpose(fetch_transform(hit.instance, vec3(0.0)).linear) * n, n);
-}
-''')
-_add('node_normal_to_world', '''
-vec3 node_normal_to_world(Hit hit, vec3 n)
-{
-    return safe_normalize(cofactors(fetch_transform(hit.instance, vec3(0.0)).linear) * n * hit.handedness, n);
-}
-''')
 _add('node_object_to_world', '''
 vec3 node_object_to_world(Hit hit, vec3 v, float point)
 {

@@ -8,6 +8,9 @@ from mathutils import Euler, Matrix
 from .compiler import value_node
 from .values import Value
 
+# The object's rotation and scale.
+_LINEAR = 'fetch_transform(hit.instance, vec3(0.0)).linear'
+
 
 def affine(compiler, matrix, point):
     """Return a vec3 expression for a 4x4 Matrix, kept in the parameter block, times a point."""
@@ -30,8 +33,7 @@ def texture_coordinate(use, output):
         return _object_coordinate(use)
     if output == 'Normal':
         if material:
-            function = compiler.helper('node_normal_to_object')
-            return use.declare('vector', f'{function}(hit, {compiler.shading_normal()})')
+            return use.declare('vector', f'normal_to_object({_LINEAR}, {compiler.shading_normal()})')
         return Value('vector', compiler.shading_normal())
     if output == 'Reflection':
         return use.declare(
@@ -146,20 +148,14 @@ def vector_transform(use, output):
     if compiler.domain != 'material' and 'OBJECT' in (start, end):
         compiler.warn(node, 'the vector as it is', 'knows no object in worlds')
         return use.declare('vector', vector)
-    # Points feel where a space begins, directions do not.
+    # Points feel where a space begins, directions do not; normals go as directions, as in Cycles.
     point = '1.0' if kind == 'POINT' else '0.0'
     if start == 'OBJECT':
-        if kind == 'NORMAL':
-            vector = f'{compiler.helper("node_normal_to_world")}(hit, {vector})'
-        else:
-            vector = f'{compiler.helper("node_object_to_world")}(hit, {vector}, {point})'
+        vector = f'{compiler.helper("node_object_to_world")}(hit, {vector}, {point})'
     elif start == 'CAMERA':
         vector = f'{compiler.helper("node_from_camera")}({vector}, {point})'
     if end == 'OBJECT':
-        if kind == 'NORMAL':
-            vector = f'{compiler.helper("node_normal_to_object")}(hit, {vector})'
-        else:
-            vector = f'{compiler.helper("node_world_to_object")}(hit, {vector}, {point})'
+        vector = f'{compiler.helper("node_world_to_object")}(hit, {vector}, {point})'
     elif end == 'CAMERA':
         vector = f'{compiler.helper("node_to_camera")}({vector}, {point})'
     if kind == 'NORMAL':
@@ -187,8 +183,7 @@ def tangent(use, output):
 def radial_tangent(use, axis):
     """The direction around an axis of the object, along the surface."""
     middle = use.declare('vector', f'{use.compiler.generated()} - 0.5').code
-    function = use.compiler.helper('node_normal_to_world')
-    return _level(use, f'{function}(hit, {_RADIAL[axis].format(g=middle)})')
+    return _level(use, f'normal_to_world({_LINEAR}, {_RADIAL[axis].format(g=middle)})')
 
 
 def _level(use, direction):
