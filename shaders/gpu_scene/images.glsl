@@ -1,4 +1,7 @@
 // Images as material code reads them.
+#if IMAGE_COUNT > 0
+#include "gpu_scene/sampling.glsl"
+#endif
 
 // The triangle's two edges in texture coordinates; false where the mesh has no UV map of that name.
 bool uv_edges(Hit hit, int name, out vec2 edge1, out vec2 edge2) {
@@ -12,26 +15,33 @@ bool uv_edges(Hit hit, int name, out vec2 edge1, out vec2 edge2) {
   return true;
 }
 
-// How far texture coordinates run along one metre of the surface.
-float uv_per_metre(Hit hit) {
+// How far the texture coordinates of a UV map run across the pixel, along the narrow axis (ray cones,
+// Akenine-Moller et al. 2019): what the wide axis needs at grazing angles comes from the samples of
+// the pixel.
+float uv_width(Hit hit, int name) {
   vec2 d1, d2;
-  if (!uv_edges(hit, UV_DEFAULT, d1, d2) || !(hit.area > 0.0)) return 0.0;
-  return sqrt(abs(d1.x * d2.y - d1.y * d2.x) / hit.area);
+  if (!uv_edges(hit, name, d1, d2) || !(hit.area > 0.0)) return 0.0;
+  return hit.footprint * sqrt(abs(d1.x * d2.y - d1.y * d2.x) / hit.area);
 }
 
-// Codes are filtered as they are and linearised afterwards, as Cycles does with 8-bit images.
-// The texture level from the pixel's footprint (ray cones, Akenine-Moller et al. 2019), along the
-// narrow axis: what the wide axis needs at grazing angles comes from the samples of the pixel.
-vec4 sample_image_at(sampler2D image, bool srgb, Hit hit, vec2 uv, bool unassociate) {
+#if IMAGE_COUNT > 0
+// The level at which a texel is as wide as `width`, in texture coordinates.
+float level_of(sampler2D image, float width) {
   vec2 extent = vec2(textureSize(image, 0));
-  float texels = hit.footprint * uv_per_metre(hit) * sqrt(extent.x * extent.y);
-  vec4 color = textureLod(image, uv, max(log2(max(texels, 1.0e-6)) + view.filtering.x, 0.0));
-  if (unassociate && color.a > 0.0) color.rgb /= color.a;
-  if (srgb) color.rgb = linear_from_srgb(color.rgb);
-  return color;
+  float texels = width * sqrt(extent.x * extent.y);
+  return max(log2(max(texels, 1.0e-6)) + view.filtering.x, 0.0);
 }
-// Images beyond what the driver allows share the last unit, which shows a missing one.
-#define sample_image(hit, index, uv, unassociate)                                              \
-  sample_image_at(material_images[min(index, IMAGE_COUNT - 1)],                                \
-                  ((material_block.z >> min(index, IMAGE_COUNT - 1)) & 1u) != 0u, hit, uv,     \
-                  unassociate)
+vec4 sample_image_at(sampler2D image, bool srgb, vec2 uv, float width, bool unassociate) {
+  return sample_image_linear(image, srgb, uv, level_of(image, width), unassociate);
+}
+vec4 sample_image_cubic_at(sampler2D image, bool srgb, vec2 uv, float width, bool unassociate) {
+  return sample_image_bicubic(image, srgb, uv, floor(level_of(image, width)), unassociate);
+}
+#define sample_image_wide(index, uv, width, unassociate) \
+  sample_image_at(IMAGE(index), uv, width, unassociate)
+#define sample_image_cubic(index, uv, width, unassociate) \
+  sample_image_cubic_at(IMAGE(index), uv, width, unassociate)
+// At coordinates of the default UV map.
+#define sample_image(hit, index, uv, unassociate) \
+  sample_image_wide(index, uv, uv_width(hit, UV_DEFAULT), unassociate)
+#endif

@@ -41,6 +41,7 @@ constexpr const char* kEverything =
     "                     normal_map_world(hit, color.rgb, 0.5));\n"
     "#if IMAGE_COUNT > 0\n"
     "  color += sample_image(hit, 0, uv, false) + sample_image(hit, 1, uv, true);\n"
+    "  color += sample_image_cubic(1, uv, 0.1, true);\n"
     "#endif\n"
     "  if (hit.backfacing) color.rgb *= hit.view * hit.geometric_normal * hit.position;\n"
     "  closure_diffuse(surface, vec3(0.1), color.rgb, 0.5, normal);\n"
@@ -60,7 +61,8 @@ constexpr const char* kPlainWorld =
     "vec3 evaluate_world(vec3 direction) { return param(0).rgb; }\n";
 constexpr const char* kImageWorld =
     "vec3 evaluate_world(vec3 direction) {\n"
-    "  return sample_environment(0, direction).rgb * luminance(param(0).rgb);\n"
+    "  return sample_image_wide(0, direction.xy, 0.0, false).rgb * luminance(param(0).rgb) +\n"
+    "         sample_image_cubic(0, direction.xy, 0.0, true).rgb;\n"
     "}\n";
 
 class Shaders : public ::testing::Test {

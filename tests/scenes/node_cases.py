@@ -7,6 +7,8 @@ Needs no Blender to be read; the functions that build nodes get a node_atlas.Tre
 import math
 from typing import Callable, NamedTuple
 
+import numpy as np
+
 # Pixels along a tile, and how values become light.
 PIXELS = 16
 SCALE, OFFSET = 0.05, 1.0
@@ -44,6 +46,7 @@ GROUPS = {
     "values": Light(),
     "textures": Light(),
     "images": Light(),
+    "projections": Light(values=False, curved=True),
     "bump": Light(values=False, curved=True, suns=(SUN,), samples=16),
     "alpha": Light(values=False, curved=True, suns=(SUN,), world=(0.2, 0.3, 0.4), samples=1024, panoptes_samples=64),
     "closures": Light(values=False, curved=True, suns=(SUN,), samples=64, panoptes_samples=64),
@@ -186,9 +189,72 @@ def scaled(prepare, scale):
 # --- images ---------------------------------------------------------------------------------------------
 
 
+def picture(size=8, seed=3, alpha=False):
+    """Random pixels, float[size, size, 4]; in range 0..1, without alpha unless asked for."""
+    pixels = np.random.default_rng(seed).random((size, size, 4))
+    if not alpha:
+        pixels[..., 3] = 1.0
+    return pixels
+
+
+def image_case(row, place=None, output="Color", low=-0.3, high=1.4, pixels=None, kind="TexImage", **settings):
+    """A case of an image node; `place(tree)` gives its vector, by default one that runs over low..high."""
+    stored = {key: settings.pop(key) for key in ("colorspace", "floats", "alpha_mode") if key in settings}
+    mode = stored.pop("alpha_mode", None)
+
+    def build(tree):
+        made = tree.add(kind, **settings)
+        made.image = tree.image(picture() if pixels is None else pixels, row, **stored)
+        if mode:
+            made.image.alpha_mode = mode
+        tree.link(place(tree) if place else tree.place(low, high), made.inputs["Vector"])
+        return made.outputs[output]
+
+    return Case(row, f"{row} {settings} {stored} {mode} {output}", build)
+
+
+def around(tree):
+    """Vectors in all directions, of a length near 1."""
+    return tree.place(-1.1, 1.2, 1)
+
+
+def on_sphere(tree):
+    """Vectors over the unit cube, as generated coordinates have them."""
+    return tree.place(0.03, 0.98, 1)
+
+
 def images():
     """Image Texture and Environment Texture."""
-    return []
+    cases = [image_case(f"extension {kind}", extension=kind, interpolation=how)
+             for kind in ("REPEAT", "EXTEND", "CLIP") for how in ("Linear", "Closest", "Cubic")]
+    cases += [image_case(f"interpolation {kind}", interpolation=kind) for kind in ("Linear", "Closest", "Cubic", "Smart")]
+    cases += [image_case(f"colour space {kind}", colorspace=kind) for kind in ("sRGB", "Non-Color", "Linear", "Raw")]
+    cases += [image_case("float image", colorspace=kind, floats=True, pixels=picture() * 3.0) for kind in ("Linear", "Non-Color")]
+    for mode in ("STRAIGHT", "CHANNEL_PACKED", "NONE"):
+        cases += [image_case(f"alpha {mode}", output=output, pixels=picture(alpha=True), alpha_mode=mode)
+                  for output in ("Color", "Alpha")]
+    cases += [image_case("projection SPHERE", on_sphere, projection="SPHERE"),
+              image_case("projection TUBE", on_sphere, projection="TUBE")]
+    cases += [image_case(f"environment {kind}", around, kind="TexEnvironment", projection=kind)
+              for kind in ("EQUIRECTANGULAR", "MIRROR_BALL")]
+    cases.append(image_case("environment cubic", around, kind="TexEnvironment", interpolation="Cubic"))
+    return cases
+
+
+def boxes():
+    """Box projection, which follows the normal of a curved surface; colours shine as they are."""
+
+    def shining(blend):
+        def build(tree):
+            made, shine = tree.add("TexImage", projection="BOX", projection_blend=blend), tree.add("Emission")
+            made.image = tree.image(picture(), "box")
+            tree.link(tree.add("TexCoord").outputs["Object"], made.inputs["Vector"])
+            tree.link(made.outputs["Color"], shine.inputs["Color"])
+            return shine.outputs[0]
+
+        return Case("projection BOX", f"projection BOX {blend}", build)
+
+    return [shining(blend) for blend in (0.0, 0.2, 0.7, 1.0)]
 
 
 # --- shaders --------------------------------------------------------------------------------------------
@@ -341,7 +407,7 @@ def added():
 
 def cases(group):
     """The cases of a group, in the order of its tiles: rows from the bottom, each from the left."""
-    return {"values": values, "textures": textures, "images": images, "bump": bumps, "alpha": alpha,
+    return {"values": values, "textures": textures, "images": images, "projections": boxes, "bump": bumps, "alpha": alpha,
             "closures": closures, "world": closures}[group]()
 
 

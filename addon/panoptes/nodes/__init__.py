@@ -12,8 +12,8 @@ import numpy as np
 from .. import compat
 from . import helpers
 from .compiler import Compiler, deep_recursion
-from . import (bump, closures, colors, converters, inputs, principled,  # noqa: F401 (register)
-               spaces, spectra, textures)
+from . import (bump, closures, colors, converters, images,  # noqa: F401 (register their nodes)
+               inputs, principled, spaces, spectra, textures)
 from .scope import Scope, resolve
 from .world import write_world
 

@@ -58,25 +58,26 @@ class NodeUse:
         """Tell whether the node has an input of this identifier or name."""
         return compat.find_socket(self.node.inputs, name) is not None
 
-    def _source(self, name):
+    def source(self, name):
+        """Return the `Source` of an input, or None where the node has no such input."""
         socket = compat.find_socket(self.node.inputs, name)
         return None if socket is None else resolve(self.scope, socket)
 
     def is_linked(self, name):
         """Tell whether another node feeds this input."""
-        source = self._source(name)
+        source = self.source(name)
         return source is not None and source.node is not None
 
     def constant(self, name):
         """Return the number(s) of an input that no node feeds, else None."""
-        source = self._source(name)
+        source = self.source(name)
         if source is None or source.node is not None:
             return None
         return self.compiler.source_number(source)
 
     def value(self, name):
         """Return the `Value` that arrives at an input, in the kind of the input socket."""
-        source = self._source(name)
+        source = self.source(name)
         if source is None:
             return Value('float', '0.0', 0.0)
         return self.compiler.source_value(source)
@@ -105,7 +106,7 @@ class Compiler:
     """State of one compilation.
 
     `domain` is 'material' or 'world'; `owner` is how warnings name the data-block
-    ("Material 'Oak'"), `pass_index` its number for the Object Info node. Afterwards: `lines`, `functions` (texts of float functions of a hit),
+    ("Material 'Oak'"), `pass_index` its number for the Object Info node. Afterwards: `lines`, `functions` (texts of functions of a hit),
     `helpers`, `parameters.rows`, `textures` (image, interpolation, extension, image user), `attributes` (names), `facts`, `warnings`.
     """
 
@@ -160,8 +161,8 @@ class Compiler:
         """Write one statement."""
         self.lines.append(line)
 
-    def function(self, prefix, create):
-        """Write a float function of a hit whose value `create()` returns; return its name.
+    def function(self, prefix, create, kind='float'):
+        """Write a function of a hit whose value `create()` returns; return its name.
 
         What `create` asks for is written inside it, even if it is written outside as well.
         """
@@ -174,7 +175,7 @@ class Compiler:
         body = ''.join(f'    {line}\n' for line in self.lines)
         self.lines, self._memo, self._shared, self.normal = outside
         self.functions.append(
-            f'float {name}(const Hit hit)\n{{\n{body}    return {result};\n}}\n')
+            f'{"float" if kind == "float" else "vec3"} {name}(const Hit hit)\n{{\n{body}    return {result};\n}}\n')
         return name
 
     def helper(self, name):

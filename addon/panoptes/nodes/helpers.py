@@ -282,6 +282,45 @@ vec2 node_equirectangular(vec3 direction)
     return vec2(u, atan(direction.z, length(direction.xy)) * 0.31830989 + 0.5);
 }
 ''')
+_add('node_mirror_ball', '''
+vec2 node_mirror_ball(vec3 direction)
+{
+    // Where a mirroring ball seen along +Y shows this direction.
+    direction = node_safe_normalize(direction);
+    vec3 halfway = direction - vec3(0.0, 1.0, 0.0);
+    float size = 2.0 * sqrt(max(-0.5 * halfway.y, 0.0));
+    if (size > 0.0)
+        halfway /= size;
+    return halfway.xz * 0.5 + 0.5;
+}
+''', 'node_safe_normalize')
+_add('node_box_weights', '''
+// How much each axis' projection shows on a surface of this normal: its own where one component
+// stands out by more than the blend, a mix of two near an edge and of three near a corner.
+vec3 node_box_weights(vec3 normal, float blend)
+{
+    vec3 n = abs(normal) / (abs(normal.x) + abs(normal.y) + abs(normal.z));
+    float limit = 0.5 * (1.0 + blend);
+    vec3 pairs = n.yzx / (n.yzx + n.zxy); // y against z, z against x, x against y
+    vec3 others = 1.0 - pairs;
+    if (n.x > limit * (n.x + n.y) && n.x > limit * (n.x + n.z))
+        return vec3(1.0, 0.0, 0.0);
+    if (n.y > limit * (n.x + n.y) && n.y > limit * (n.y + n.z))
+        return vec3(0.0, 1.0, 0.0);
+    if (n.z > limit * (n.x + n.z) && n.z > limit * (n.y + n.z))
+        return vec3(0.0, 0.0, 1.0);
+    if (blend <= 0.0)
+        return vec3(1.0, 0.0, 0.0);
+    vec3 mixed = clamp((vec3(pairs.z, pairs.x, others.y) - 0.5 * (1.0 - blend)) / blend, 0.0, 1.0);
+    if (n.z < (1.0 - limit) * (n.x + n.y))
+        return vec3(mixed.x, 1.0 - mixed.x, 0.0);
+    if (n.x < (1.0 - limit) * (n.y + n.z))
+        return vec3(0.0, mixed.y, 1.0 - mixed.y);
+    if (n.y < (1.0 - limit) * (n.x + n.z))
+        return vec3(mixed.z, 0.0, 1.0 - mixed.z);
+    return ((2.0 - limit) * n + (limit - 1.0)) / (2.0 * limit - 1.0);
+}
+''')
 _add('node_sphere_map', '''
 vec2 node_sphere_map(vec3 p)
 {

@@ -9,7 +9,7 @@ from .compiler import value_node
 from .values import Value
 
 # The object's rotation and scale.
-_LINEAR = 'fetch_transform(hit.instance, vec3(0.0)).linear'
+LINEAR = 'fetch_transform(hit.instance, vec3(0.0)).linear'
 
 
 def affine(compiler, matrix, point):
@@ -33,7 +33,7 @@ def texture_coordinate(use, output):
         return _object_coordinate(use)
     if output == 'Normal':
         if material:
-            return use.declare('vector', f'normal_to_object({_LINEAR}, {compiler.shading_normal()})')
+            return use.declare('vector', f'normal_to_object({LINEAR}, {compiler.shading_normal()})')
         return Value('vector', compiler.shading_normal())
     if output == 'Reflection':
         return use.declare(
@@ -183,7 +183,7 @@ def tangent(use, output):
 def radial_tangent(use, axis):
     """The direction around an axis of the object, along the surface."""
     middle = use.declare('vector', f'{use.compiler.generated()} - 0.5').code
-    return _level(use, f'normal_to_world({_LINEAR}, {_RADIAL[axis].format(g=middle)})')
+    return _level(use, f'normal_to_world({LINEAR}, {_RADIAL[axis].format(g=middle)})')
 
 
 def _level(use, direction):
