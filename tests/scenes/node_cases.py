@@ -173,7 +173,57 @@ def textures():
     cases = [node("TexChecker", 0.1, 1.0, output, prepare=scaled(at, 2.9)) for output in (0, 1)]
     for kind in ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL"):
         cases.append(node("TexGradient", prepare=placed(low=-0.9, high=1.1), gradient_type=kind))
+    for size in ("1D", "2D", "3D", "4D"):
+        cases += [noisy("TexNoise", size, output=output, Detail=2.4, Distortion=distortion, Scale=1.3)
+                  for output, distortion in ((0, 0.0), (1, 0.7))]
+        cases += [noisy("TexWhiteNoise", size, output=output) for output in (0, 1)]
+        cases += [noisy("TexVoronoi", size, output=output, feature=feature, Scale=1.7, Randomness=0.9)
+                  for feature in ("F1", "F2", "SMOOTH_F1") for output in range(3)]
+        cases += [noisy("TexVoronoi", size, feature=feature, Scale=1.7) for feature in ("DISTANCE_TO_EDGE", "N_SPHERE_RADIUS")]
+    cases += [noisy("TexVoronoi", "3D", distance=kind, Scale=1.7) for kind in ("MANHATTAN", "CHEBYCHEV", "MINKOWSKI")]
+    cases += [noisy("TexVoronoi", size, output=output, Scale=1.7)
+              for size, output in (("1D", "W"), ("4D", "W"))]
+    cases += [noisy("TexMusgrave", size, musgrave_type=kind, Detail=3.6, Scale=1.3, Offset=0.8, Gain=1.4)
+              for size in ("1D", "2D", "3D", "4D")
+              for kind in ("FBM", "MULTIFRACTAL", "HETERO_TERRAIN", "HYBRID_MULTIFRACTAL", "RIDGED_MULTIFRACTAL")]
+    for kind, directions in (("BANDS", ("X", "Y", "Z", "DIAGONAL")), ("RINGS", ("X", "Y", "Z", "SPHERICAL"))):
+        cases += [noisy("TexWave", wave_type=kind, Scale=0.3, Distortion=0.7 if direction == "Z" else 0.0,
+                        **{f"{kind.lower()}_direction": direction}) for direction in directions]
+    cases += [noisy("TexWave", wave_profile=kind, Scale=0.3) for kind in ("SAW", "TRI")]
+    cases += [noisy("TexMagic", output=depth % 2, turbulence_depth=depth, Scale=0.4, Distortion=1.2) for depth in range(0, 11)]
+    cases += [noisy("TexBrick", output=output, Scale=1.3, Mortar_Size=0.1, Mortar_Smooth=0.4, Bias=0.1, squash=1.4)
+              for output in (0, 1)]
     return cases
+
+
+def noisy(kind, size=None, output=0, low=-1.73, high=2.11, **settings):
+    """A texture over a place that varies in all components; `settings` are properties or inputs."""
+
+    def build(tree):
+        made = tree.add(kind)
+        for name in ("noise_dimensions", "musgrave_dimensions", "voronoi_dimensions"):
+            if size and hasattr(made, name):
+                setattr(made, name, size)
+        for key, value in settings.items():
+            if hasattr(made, key):
+                setattr(made, key, value)
+        for key, value in settings.items():
+            if not hasattr(made, key):
+                made.inputs[key.replace("_", " ")].default_value = value
+        def place(turn):
+            # White noise is another for every bit: at whole numbers both engines have the same bits.
+            where, whole = tree.place(low, high, turn), tree.add("VectorMath", operation="FLOOR")
+            tree.link(where, whole.inputs[0])
+            return whole.outputs[0] if kind == "TexWhiteNoise" else where
+
+        if size != "1D":
+            tree.link(place(0), made.inputs["Vector"])
+        if size in ("1D", "4D"):
+            tree.link(tree.component(place(1), 2), made.inputs["W"])
+        return [socket for socket in made.outputs if socket.enabled][output] if isinstance(output, int) else made.outputs[output]
+
+    words = [kind, str(size), str(output), *(f"{key}={value}" for key, value in settings.items())]
+    return Case(kind, " ".join(words), build)
 
 
 def scaled(prepare, scale):
@@ -352,9 +402,24 @@ def coat_bumped(tree):
     return surface.outputs[0]
 
 
+def normal_mapped(space, strength=1.0):
+    """A Normal Map node that reads a colour which varies over the surface."""
+
+    def build(tree):
+        made, surface = tree.add("NormalMap", space=space, uv_map="UVMap"), tree.add("BsdfDiffuse")
+        made.inputs["Strength"].default_value = strength
+        tree.link(tree.place(0.35, 0.8, 1), made.inputs["Color"])
+        tree.link(made.outputs[0], surface.inputs["Normal"])
+        return surface.outputs[0]
+
+    return Case("Normal Map", f"Normal Map {space} {strength}", build)
+
+
 def bumps():
-    """Normals from heights."""
-    return [bumped("Bump"), bumped("Bump", Strength=0.4), bumped("Bump", Distance=0.3), bumped("Bump", invert=True),
+    """Normals from heights and from maps."""
+    return [normal_mapped("TANGENT"), normal_mapped("TANGENT", 0.4), normal_mapped("OBJECT"), normal_mapped("WORLD"),
+            normal_mapped("BLENDER_OBJECT"), normal_mapped("BLENDER_WORLD"),
+            bumped("Bump"), bumped("Bump", Strength=0.4), bumped("Bump", Distance=0.3), bumped("Bump", invert=True),
             Case("Bump on Bump", "Bump on Bump", twice_bumped), Case("Displacement", "Displacement", displaced),
             Case("Displacement", "Displacement WORLD", lambda tree: displaced(tree, "WORLD")),
             Case("Clearcoat Normal", "Clearcoat Normal", coat_bumped)]
@@ -417,11 +482,32 @@ def side(count):
 
 
 # Where a row may be further from Cycles than rounding, and why.
+HALF = "what a surface is, is kept in half floats"
+EIGHT_BITS = "llvmpipe filters 8-bit images in 8 bits"
+FITTED = "the world's light by lobe is a fit"
+ROUNDING, LIGHT = Bound(1e-3, 5e-3, ""), Bound(2e-3, 1.5e-2, HALF)
 BOUNDS = {
+    ("values", "LightFalloff"): Bound(0.05, 0.1, "replaced by the strength alone"),
+    ("images", "alpha STRAIGHT"): Bound(3e-2, 0.1, "colours are multiplied by alpha in 8 bits"),
+    ("images", "projection SPHERE"): Bound(3e-2, 0.4, "one pixel lies on the seam; " + EIGHT_BITS),
+    ("images", "projection TUBE"): Bound(3e-2, 0.4, "one pixel lies on the seam; " + EIGHT_BITS),
+    ("bump", "Normal Map"): Bound(1.5e-2, 0.2, "normals below the horizon are turned up, at the limit of precision"),
+    ("closures", "BsdfGlossy"): Bound(1.5e-2, 0.1, "masking is correlated, as in Cycles since 3.5; here it is separable"),
+    ("closures", "MixShader"): Bound(6e-3, 0.08, "half a highlight is one pixel; " + HALF),
+    ("closures", "Principled Subsurface"): Bound(0.15, 0.5, "light leaves where it enters"),
+    ("closures", "Principled Anisotropic"): Bound(0.06, 0.2, "the highlight is round"),
+    ("world", "Principled Subsurface"): Bound(0.1, 0.3, "light leaves where it enters"),
+    ("world", "Principled Clearcoat"): Bound(0.06, 0.12, FITTED),
+    ("world", "BsdfVelvet"): Bound(0.5, 2.0, FITTED),
+    ("alpha", "tinted Transparent"): Bound(0.8, 1.6, "what shows through is grey until rays are traced"),
+    ("alpha", "BsdfTransparent"): Bound(0.04, 0.3, "alpha is a coin thrown once a sample"),
+    ("alpha", "MixShader"): Bound(0.02, 0.15, "alpha is a coin thrown once a sample"),
+    ("alpha", "Principled Alpha"): Bound(0.03, 0.25, "alpha is a coin thrown once a sample"),
 }
-ROUNDING = Bound(1e-3, 5e-3, "")
+DEFAULTS = {"images": Bound(8e-3, 4e-2, EIGHT_BITS), "projections": Bound(8e-3, 4e-2, EIGHT_BITS), "bump": LIGHT, "closures": LIGHT,
+            "world": Bound(0.02, 0.08, FITTED)}
 
 
 def bound(group, row):
     """How far a row of a group may be from Cycles."""
-    return BOUNDS.get((group, row)) or BOUNDS.get(row) or ROUNDING
+    return BOUNDS.get((group, row)) or DEFAULTS.get(group, ROUNDING)

@@ -13,7 +13,7 @@ from .. import compat
 from . import helpers
 from .compiler import Compiler, deep_recursion
 from . import (bump, closures, colors, converters, images,  # noqa: F401 (register their nodes)
-               inputs, principled, spaces, spectra, textures)
+               inputs, noise, principled, spaces, spectra, textures)
 from .scope import Scope, resolve
 from .world import write_world
 

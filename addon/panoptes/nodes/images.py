@@ -140,16 +140,16 @@ def _box(use, sample):
 
 def _has_mapping(node):
     """Tell whether the node's own (hidden) texture mapping moves its coordinates."""
-    mapping = node.texture_mapping
-    return (tuple(mapping.translation) != (0.0, 0.0, 0.0)
-            or tuple(mapping.rotation) != (0.0, 0.0, 0.0)
-            or tuple(mapping.scale) != (1.0, 1.0, 1.0))
+    mapping = getattr(node, 'texture_mapping', None)
+    return mapping is not None and (tuple(mapping.translation) != (0.0, 0.0, 0.0)
+                                    or tuple(mapping.rotation) != (0.0, 0.0, 0.0)
+                                    or tuple(mapping.scale) != (1.0, 1.0, 1.0))
 
 
 def mapped(use):
     """Return a texture node's vector as a vec3 variable, moved by its own texture mapping."""
     compiler, node = use.compiler, use.node
-    if use.is_linked('Vector'):
+    if use.is_linked('Vector') or node.type == 'TEX_WHITE_NOISE':
         vector = use.get('Vector', 'vector')
     elif node.type == 'TEX_IMAGE':
         vector = f'vec3({compiler.uv("")}, 0.0)'

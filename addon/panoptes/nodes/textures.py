@@ -22,7 +22,7 @@ def checker(use, output):
 
     def create():
         function = use.compiler.helper('node_checker')
-        vector = mapped(use, use.is_linked('Vector'))
+        vector = mapped(use)
         return use.declare('float', f'{function}({vector} * {use.get("Scale", "float")})').code
 
     key = ('checker', use.scope.path, use.node.as_pointer())
@@ -36,7 +36,7 @@ def checker(use, output):
 @value_node('TEX_GRADIENT')
 def gradient(use, output):
     """Gradient Texture node."""
-    position = mapped(use, use.is_linked('Vector'))
+    position = mapped(use)
     code = _GRADIENTS[use.node.gradient_type].format(p=position)
     factor = use.declare('float', f'clamp({code}, 0.0, 1.0)')
     return factor if output == 'Fac' else Value('color', f'vec3({factor.code})')
