@@ -95,9 +95,11 @@ float sheen_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
 
 // Share of white light from everywhere that the sheen sends back: fits to quadrature.
 float sheen_albedo(float roughness, float nv) {
-  float x = 1.0 - clamp(nv, 0.0, 1.0);
+  nv = clamp(nv, 0.0, 1.0);
+  float x = 1.0 - nv;
   if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
-  return roughness * x * x;
+  float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
+  return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
 }
 
 // Where a mapped normal leaves the interpolated one, light fades out before the surface's own

@@ -498,7 +498,7 @@ BOUNDS = {
     ("closures", "Principled Anisotropic"): Bound(0.06, 0.2, "the highlight is round"),
     ("world", "Principled Subsurface"): Bound(0.1, 0.3, "light leaves where it enters"),
     ("world", "Principled Clearcoat"): Bound(0.06, 0.12, FITTED),
-    ("world", "BsdfVelvet"): Bound(0.5, 2.0, FITTED),
+    ("world", "BsdfVelvet"): Bound(0.05, 0.15, FITTED),
     ("alpha", "tinted Transparent"): Bound(0.8, 1.6, "what shows through is grey until rays are traced"),
     ("alpha", "BsdfTransparent"): Bound(0.04, 0.3, "alpha is a coin thrown once a sample"),
     ("alpha", "MixShader"): Bound(0.02, 0.15, "alpha is a coin thrown once a sample"),
