@@ -349,7 +349,7 @@ class TestUnsupported:
     def test_named_once(self, scene, tmp_path):
         tree = Tree()
         for name in ('Base Color', 'Roughness'):
-            tree.link(tree.add('ShaderNodeTexNoise'), 'Color', tree.surface, name)
+            tree.link(tree.add('ShaderNodeTexSky'), 'Color', tree.surface, name)
         shader = tree.compile()
         assert len(shader.warnings) == 1
         assert shader.warnings[0] == ("Material 'Test': node Noise Texture is not supported yet; a "
