@@ -118,6 +118,12 @@ def image_is_srgb(image):
     return not image_is_data(image) and not name.startswith(linear)
 
 
+def image_colors_are_exact(image):
+    """Tell whether an image's colour space is one that is read as it is meant: sRGB or Rec.709 linear."""
+    names = ('sRGB', 'Linear', 'Linear Rec.709', 'Linear BT.709 I-D65', 'scene_linear', 'Raw', 'Utility - Raw')
+    return image_is_data(image) or image.colorspace_settings.name in names
+
+
 def image_has_straight_color(image):
     """Tell whether an image's colour is divided by alpha where a tree uses both."""
     return not image_is_data(image) and image.alpha_mode not in ('CHANNEL_PACKED', 'NONE')

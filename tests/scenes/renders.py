@@ -25,7 +25,7 @@ CACHE = ROOT / "build" / "reference-cache"
 SHARED = Path(os.environ.get("PANOPTES_SHARED_SCENES", ROOT.parent / "shared" / "scenes"))
 BLENDER = os.environ.get("PANOPTES_BLENDER", "/usr/bin/blender")
 # Scenes that scripts build, by the prefix of their names.
-BUILT = {"builder:": ("builders.py",), "nodes:": ("node_atlas.py", "node_cases.py")}
+BUILT = {"builder:": ("builders.py",), "nodes:": ("node_atlas.py", "node_cases.py", "node_values.py", "node_textures.py", "node_shaders.py")}
 # One render of one picture takes seconds; this only ends what hangs.
 TIME_LIMIT_SECONDS = 1200
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Noise, White Noise, Musgrave, Voronoi, Wave, Magic and Brick Texture."""
 
-from . import noise_helpers  # noqa: F401 (registers the GLSL)
+from . import noise_helpers, voronoi_helpers  # noqa: F401 (register the GLSL)
 from .compiler import value_node
 from .images import mapped
 from .values import Value
