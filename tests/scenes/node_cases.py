@@ -43,6 +43,7 @@ GROUPS = {
     "projections": Light(values=False, curved=True),
     "bump": Light(values=False, curved=True, suns=(SUN,), samples=16),
     "alpha": Light(values=False, curved=True, suns=(SUN,), world=(0.2, 0.3, 0.4), samples=1024, panoptes_samples=64),
+    "emission": Light(values=False, suns=(SUN,), samples=4),
     "closures": Light(values=False, curved=True, suns=(SUN,), samples=64, panoptes_samples=64),
     "world": Light(values=False, curved=True, world=(0.8, 1.0, 1.2), samples=256, panoptes_samples=64),
 }
@@ -52,6 +53,7 @@ def cases(group):
     """The cases of a group, in the order of its tiles: rows from the bottom, each from the left."""
     return {"values": node_values.values, "textures": node_textures.textures, "images": node_textures.images,
             "projections": node_textures.boxes, "bump": node_shaders.bumps, "alpha": node_shaders.alpha,
+            "emission": node_shaders.emission,
             "closures": node_shaders.closures, "world": node_shaders.closures}[group]()
 
 
@@ -72,7 +74,6 @@ BOUNDS = {
     ("images", "projection TUBE"): Bound(3e-2, 0.4, "one pixel lies on the seam; " + EIGHT_BITS),
     ("bump", "Normal Map"): Bound(1.5e-2, 0.2, "normals below the horizon are turned up, at the limit of precision"),
     ("closures", "BsdfGlossy"): Bound(1.5e-2, 0.1, "masking is correlated, as in Cycles since 3.5; here it is separable"),
-    ("closures", "MixShader"): Bound(6e-3, 0.08, "half a highlight is one pixel; " + HALF),
     ("closures", "Principled Subsurface"): Bound(0.15, 0.5, "light leaves where it enters"),
     ("closures", "Principled Anisotropic"): Bound(0.06, 0.2, "the highlight is round"),
     ("world", "Principled Subsurface"): Bound(0.1, 0.3, "light leaves where it enters"),
@@ -84,7 +85,8 @@ BOUNDS = {
     ("alpha", "Principled Alpha"): Bound(0.03, 0.25, "alpha is a coin thrown once a sample"),
 }
 IMAGES = Bound(8e-3, 4e-2, EIGHT_BITS)
-DEFAULTS = {"images": IMAGES, "projections": IMAGES, "bump": LIGHT, "closures": LIGHT, "world": Bound(0.02, 0.08, FITTED)}
+DEFAULTS = {"images": IMAGES, "projections": IMAGES, "bump": LIGHT, "emission": LIGHT, "closures": LIGHT,
+            "world": Bound(0.02, 0.08, FITTED)}
 
 
 def bound(group, row):

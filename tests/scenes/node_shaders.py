@@ -29,12 +29,18 @@ def closures():
     cases = [shader("BsdfDiffuse", Color=ORANGE, Roughness=roughness) for roughness in (0.0, 0.4, 1.0)]
     cases += [shader("BsdfGlossy", distribution="GGX", Color=ORANGE, Roughness=roughness) for roughness in (0.2, 0.5, 0.9)]
     cases += [shader("BsdfPrincipled", f"Principled {row}", **{"Base_Color": ORANGE, **inputs}) for row, inputs in PRINCIPLED]
-    cases.append(shader("Emission", Color=ORANGE, Strength=2.0))
     cases += [shader("BsdfVelvet", Color=ORANGE, Sigma=sigma) for sigma in (0.4, 1.0)]
     cases += [shader("BsdfGlass", distribution="GGX", Color=ORANGE, Roughness=0.3, IOR=1.45),
               shader("BsdfRefraction", distribution="GGX", Color=ORANGE, Roughness=0.3, IOR=1.45)]
-    cases += [mixed("BsdfDiffuse", "BsdfGlossy", 0.3), mixed("BsdfDiffuse", "Emission", 0.3), added()]
+    cases.append(mixed("BsdfDiffuse", "BsdfGlossy", 0.3))
     return cases
+
+
+def emission():
+    """What shines, on flat tiles: they do not light each other."""
+    return [shader("Emission", Color=ORANGE, Strength=2.0),
+            shader("BsdfPrincipled", "Principled Emission", Base_Color=ORANGE, Emission=ORANGE, Emission_Strength=1.5),
+            mixed("BsdfDiffuse", "Emission", 0.3), added()]
 
 
 def alpha():
@@ -127,7 +133,6 @@ PRINCIPLED = [
     ("Sheen", {"Sheen": 1.0, "Sheen_Tint": 0.0}), ("Sheen Tint", {"Sheen": 1.0, "Sheen_Tint": 1.0}),
     ("Clearcoat", {"Clearcoat": 1.0}), ("Clearcoat Roughness", {"Clearcoat": 1.0, "Clearcoat_Roughness": 0.4}),
     ("Transmission", {"Transmission": 0.5}), ("Transmission", {"Transmission": 1.0}), ("IOR", {"Transmission": 0.5, "IOR": 2.0}),
-    ("Emission", {"Emission": ORANGE, "Emission_Strength": 1.5}),
     ("Subsurface", {"Subsurface": 0.5, "Subsurface_Color": (0.9, 0.1, 0.1, 1.0)}), ("Anisotropic", {"Anisotropic": 0.7}),
 ]
 

@@ -4,7 +4,7 @@
 
     tests/scenes/nodes.py [GROUP ...] [--samples N] [--worst] [--pictures FOLDER]
 
-Groups: values, textures, images, closures, world. A tile of node_atlas.py is compared without its border, as values
+Groups: those of node_cases.GROUPS. A tile of node_atlas.py is compared without its border, as values
 (the light turned back into the number) or as light. Errors are relative to the tile's root mean square in Cycles; of a
 row with several tiles the worst is shown. --worst names the tile.
 """

@@ -45,7 +45,7 @@ def test_tiles_are_counted_from_the_lower_left():
     assert nodes.tile(picture, 0, 4).mean() == 1.0 and nodes.tile(picture, 3, 4).mean() == 4.0
 
 
-@pytest.mark.parametrize("group", ["values", "textures", "images", "projections", "bump", "closures",
+@pytest.mark.parametrize("group", ["values", "textures", "images", "projections", "bump", "emission", "closures",
                                    pytest.param("alpha", marks=pytest.mark.slow), pytest.param("world", marks=pytest.mark.slow)])
 def test_nodes_are_as_in_cycles(table, group):
     over = []
