@@ -352,7 +352,7 @@ class TestUnsupported:
             tree.link(tree.add('ShaderNodeTexSky'), 'Color', tree.surface, name)
         shader = tree.compile()
         assert len(shader.warnings) == 1
-        assert shader.warnings[0] == ("Material 'Test': node Noise Texture is not supported yet; a "
+        assert shader.warnings[0] == ("Material 'Test': node Sky Texture is not supported yet; a "
                                       'medium grey is used instead.')
         check(tmp_path, [shader])
 
