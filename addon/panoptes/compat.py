@@ -16,20 +16,34 @@ PRINCIPLED_SOCKETS = {
     'specular': 'Specular',
     'specular_tint': 'Specular Tint',
     'transmission': 'Transmission',
+    'transmission_roughness': 'Transmission Roughness',
     'ior': 'IOR',
     'emission': 'Emission',
-    'clearcoat': 'Clearcoat',
-    'clearcoat_roughness': 'Clearcoat Roughness',
+    'coat': 'Clearcoat',
+    'coat_roughness': 'Clearcoat Roughness',
+    'coat_normal': 'Clearcoat Normal',
     'sheen': 'Sheen',
+    'sheen_tint': 'Sheen Tint',
+    'subsurface': 'Subsurface',
+    'subsurface_color': 'Subsurface Color',
+    'anisotropic': 'Anisotropic',
+    'base_color': 'Base Color',
 }
 if PRINCIPLED_GENERATION == 4:
     PRINCIPLED_SOCKETS.update({
         'specular': 'Specular IOR Level',
         'transmission': 'Transmission Weight',
         'emission': 'Emission Color',
-        'clearcoat': 'Coat Weight',
-        'clearcoat_roughness': 'Coat Roughness',
+        'coat': 'Coat Weight',
+        'coat_roughness': 'Coat Roughness',
+        'coat_ior': 'Coat IOR',
+        'coat_tint': 'Coat Tint',
+        'coat_normal': 'Coat Normal',
         'sheen': 'Sheen Weight',
+        'sheen_roughness': 'Sheen Roughness',
+        'subsurface': 'Subsurface Weight',
+        'diffuse_roughness': 'Diffuse Roughness',
+        'thin_film': 'Thin Film Thickness',
     })
 
 
@@ -57,6 +71,13 @@ def uses_nodes(owner):
     # From 5.0 on (lamps: 5.2) the switch is always on, and reading it is deprecated.
     since = (5, 2, 0) if isinstance(owner, bpy.types.Light) else (5, 0, 0)
     return VERSION >= since or owner.use_nodes
+
+
+def displacement_method(material):
+    """Return how a material is displaced: 'BUMP', 'DISPLACEMENT' or 'BOTH'."""
+    # A property of Blender's own since 4.1, of Cycles' before.
+    owner = material if hasattr(material, 'displacement_method') else getattr(material, 'cycles', None)
+    return getattr(owner, 'displacement_method', 'BUMP')
 
 
 # Data-blocks
@@ -95,6 +116,12 @@ def image_is_srgb(image):
     name = image.colorspace_settings.name
     linear = ('Linear', 'Non-Color', 'Raw', 'XYZ', 'ACES2065', 'ACEScg', 'Utility - Raw', 'scene_linear')
     return not image_is_data(image) and not name.startswith(linear)
+
+
+def image_colors_are_exact(image):
+    """Tell whether an image's colour space is one that is read as it is meant: sRGB or Rec.709 linear."""
+    names = ('sRGB', 'Linear', 'Linear Rec.709', 'Linear BT.709 I-D65', 'scene_linear', 'Raw', 'Utility - Raw')
+    return image_is_data(image) or image.colorspace_settings.name in names
 
 
 def image_has_straight_color(image):

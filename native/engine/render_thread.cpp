@@ -94,8 +94,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     settings.transparent_film = request.transparent_film;
     settings.filter_width = request.filter_width;
     job.set_status("compiling shaders", 0);
-    const rasterize::GBufferOptions surfaces{.glossy = plan::runs(plan, "glossy"),
-                                             .emission = plan::runs(plan, "emission")};
+    const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
     gpu_scene_.check_programs(
         [&](const gpu_scene::GpuMaterial& material) {
           programs_.get(rasterize::surface_program(material, surfaces));

@@ -26,6 +26,10 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                          "no material emits light"));
   effects.push_back(when("glossy", facts.glossy, "some material reflects",
                          "no material reflects"));
+  effects.push_back(when("transmission", facts.transmission, "some material refracts light",
+                         "no material refracts light"));
+  effects.push_back(when("layers", facts.layers, "some material has a coat or a sheen",
+                         "no material has a coat or a sheen"));
   const char* kinds[4] = {"point", "sun", "spot", "area"};
   for (int i = 0; i < 4; ++i) {
     const int lamps = facts.lamps[i], casting = facts.shadow_lamps[i];

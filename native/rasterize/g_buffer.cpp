@@ -30,14 +30,27 @@ gl::ProgramSource raster_program(const gpu_scene::GpuMaterial* material,
   return source;
 }
 
+GBufferOptions GBufferOptions::of(const plan::Effects& plan) {
+  return {.glossy = plan::runs(plan, "glossy"),
+          .emission = plan::runs(plan, "emission"),
+          .transmission = plan::runs(plan, "transmission"),
+          .layers = plan::runs(plan, "layers")};
+}
+
+void GBufferOptions::add_defines(gl::ProgramSource& source) const {
+  source.defines.push_back(fmt::format("GLOSSY {}", int(glossy)));
+  source.defines.push_back(fmt::format("EMISSION {}", int(emission)));
+  source.defines.push_back(fmt::format("TRANSMISSION {}", int(transmission)));
+  source.defines.push_back(fmt::format("LAYERS {}", int(layers)));
+}
+
 gl::ProgramSource surface_program(const gpu_scene::GpuMaterial& material,
                                   const GBufferOptions& options) {
   gl::ProgramSource source;
   source.name = fmt::format("surfaces of material '{}'", material.name);
   source.stages = {{GL_COMPUTE_SHADER, "rasterize/surfaces.comp"}};
   gpu_scene::GpuScene::add_material(material, source);
-  source.defines.push_back(fmt::format("GLOSSY {}", int(options.glossy)));
-  source.defines.push_back(fmt::format("EMISSION {}", int(options.emission)));
+  options.add_defines(source);
   return source;
 }
 
@@ -68,6 +81,8 @@ void GBuffer::resize(int width, int height, const GBufferOptions& options) {
   diffuse_ = image(GL_RGBA16F);
   if (options.glossy) specular_ = image(GL_RGBA16F);
   if (options.emission) emission_ = image(GL_RGBA32F);
+  if (options.transmission) transmission_ = image(GL_RGBA32UI);
+  if (options.layers) layers_ = image(GL_RGBA32UI);
   pixels_ = gl::Buffer(int64_t(width) * height * 4);
   framebuffer_ = gl::Framebuffer::make();
   glNamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT0, visibility_.id(), 0);
@@ -118,6 +133,8 @@ void GBuffer::shade(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs
     diffuse_.bind_image(2, GL_WRITE_ONLY);
     if (options_.glossy) specular_.bind_image(3, GL_WRITE_ONLY);
     if (options_.emission) emission_.bind_image(4, GL_WRITE_ONLY);
+    if (options_.transmission) transmission_.bind_image(5, GL_WRITE_ONLY);
+    if (options_.layers) layers_.bind_image(6, GL_WRITE_ONLY);
     glUniform1ui(2, m);
     dispatch_bin(m);
   }
@@ -154,8 +171,10 @@ void GBuffer::bind_surfaces() const {
   normals_.bind(10);
   diffuse_.bind(11);
   if (options_.glossy) specular_.bind(12);
+  if (options_.transmission) transmission_.bind(14);
+  if (options_.layers) layers_.bind(15);
   // Samplers of material images may still sit on these units.
-  for (GLuint unit = 9; unit <= 12; ++unit) glBindSampler(unit, 0);
+  for (GLuint unit = 9; unit <= 15; ++unit) glBindSampler(unit, 0);
 }
 
 void GBuffer::bind_visibility() const {

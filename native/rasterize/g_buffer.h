@@ -8,6 +8,7 @@
 #include "gl/pass_timer.h"
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
+#include "plan/effect.h"
 
 namespace panoptes::rasterize {
 
@@ -22,6 +23,12 @@ gl::ProgramSource raster_program(const gpu_scene::GpuMaterial* material,
 struct GBufferOptions {
   bool glossy = false;
   bool emission = false;
+  bool transmission = false;
+  bool layers = false;  // a coat or a sheen
+  // What of this a frame's plan runs.
+  static GBufferOptions of(const plan::Effects& plan);
+  // Adds the macros that g_buffer.glsl asks for.
+  void add_defines(gl::ProgramSource& source) const;
   bool operator==(const GBufferOptions&) const = default;
 };
 gl::ProgramSource surface_program(const gpu_scene::GpuMaterial& material,
@@ -71,7 +78,7 @@ class GBuffer {
   GBufferOptions options_;
   uint32_t material_count_ = 0;
   const gl::Buffer* records_ = nullptr;
-  gl::Texture visibility_, depth_, position_, normals_, diffuse_, specular_, emission_;
+  gl::Texture visibility_, depth_, position_, normals_, diffuse_, specular_, emission_, transmission_, layers_;
   gl::Framebuffer framebuffer_;
   gl::Buffer bins_, pixels_;
 };

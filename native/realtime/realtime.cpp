@@ -48,8 +48,8 @@ gl::ProgramSource direct_light_program(const LightOptions& options) {
   source.name = "direct light";
   source.stages = {{GL_COMPUTE_SHADER, "realtime/direct_light.comp"}};
   source.defines = {fmt::format("SHADOWS {}", int(options.shadows)),
-                    fmt::format("GLOSSY {}", int(options.glossy)),
                     fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae))};
+  options.surfaces.add_defines(source);
   return source;
 }
 
@@ -58,11 +58,10 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
   source.name = "compose";
   source.stages = {{GL_COMPUTE_SHADER, "realtime/compose.comp"}};
   source.defines = {fmt::format("LAMPS {}", int(options.lamps)),
-                    fmt::format("GLOSSY {}", int(options.glossy)),
-                    fmt::format("EMISSION {}", int(options.emission)),
                     fmt::format("BACKGROUND {}", int(options.background)),
                     fmt::format("WORLD_LIGHT {}", int(options.world_light)),
                     fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film))};
+  options.surfaces.add_defines(source);
   film.add_defines(source);
   return source;
 }
@@ -96,8 +95,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   camera_ = camera;
   settings_ = settings;
   plan_ = plan;
-  glossy_ = runs(plan, "glossy");
-  emission_ = runs(plan, "emission");
+  surfaces_ = rasterize::GBufferOptions::of(plan);
   alpha_ = runs(plan, "alpha");
   emissive_light_ = runs(plan, "emissive_light");
   lamps_ = emissive_light_ || runs(plan, "direct_light");
@@ -115,9 +113,9 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   bounds_ = scene.bounds();
 
   const int width = camera.width, height = camera.height;
-  g_buffer_.resize(width, height, {.glossy = glossy_, .emission = emission_});
+  g_buffer_.resize(width, height, surfaces_);
   want(diffuse_light_, lamps_, width, height);
-  want(glossy_light_, lamps_ && glossy_, width, height);
+  want(glossy_light_, lamps_ && surfaces_.glossy, width, height);
   want(environment_, background_, width, height);
   if (!shadows_) shadow_maps_.release();
   if (!emissive_light_) {
@@ -214,14 +212,14 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
   }
 
   gl::PassScope scope(timer_, "compose");
-  const ComposeOptions options{lamps_,      glossy_,      emission_,
-                               background_, world_light_, settings_.transparent_film};
+  const ComposeOptions options{lamps_, background_, world_light_, settings_.transparent_film,
+                               surfaces_};
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();
   if (lamps_) diffuse_light_.bind(0);
-  if (lamps_ && glossy_) glossy_light_.bind(1);
-  if (emission_) g_buffer_.emission().bind(2);
+  if (lamps_ && surfaces_.glossy) glossy_light_.bind(1);
+  if (surfaces_.emission) g_buffer_.emission().bind(2);
   if (background_) environment_.bind(3);
   if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
   film.bind();
@@ -288,7 +286,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
   store(lights_buffer_, lights.data(), lights.size() * sizeof(shared::Light));
   store(faces_buffer_, set.faces.data(), set.faces.size() * sizeof(shared::ShadowFace));
   clear(diffuse_light_);
-  if (glossy_) clear(glossy_light_);
+  if (surfaces_.glossy) clear(glossy_light_);
 
   // Maps hold for the next sample and frame unless a lamp's point or an alpha threshold moves on,
   // or another batch has overwritten them.
@@ -304,7 +302,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
       view_block_.set(view);
     }
     gl::PassScope scope(timer_, "direct_light");
-    programs_.get(direct_light_program({shadows_, glossy_, filtered_})).use();
+    programs_.get(direct_light_program({shadows_, filtered_, surfaces_})).use();
     g_buffer_.bind_bins();
     g_buffer_.bind_surfaces();
     if (shadows_) shadow_maps_.bind(13);
@@ -312,8 +310,8 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, faces_buffer_.id());
     diffuse_light_.bind(0);
     diffuse_light_.bind_image(0, GL_WRITE_ONLY);
-    if (glossy_) glossy_light_.bind(1);
-    if (glossy_) glossy_light_.bind_image(1, GL_WRITE_ONLY);
+    if (surfaces_.glossy) glossy_light_.bind(1);
+    if (surfaces_.glossy) glossy_light_.bind_image(1, GL_WRITE_ONLY);
     glUniform1ui(2, batch.first_light);
     glUniform1ui(3, batch.light_count);
     g_buffer_.dispatch_surfaces();

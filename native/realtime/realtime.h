@@ -30,12 +30,13 @@ struct Settings {
 
 // Programs of this integrator, for the frame and for the shader validation.
 struct LightOptions {
-  bool shadows = false, glossy = false, filtered_penumbrae = false;
+  bool shadows = false, filtered_penumbrae = false;
+  rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
-  bool lamps = false, glossy = false, emission = false, background = false, world_light = false;
-  bool transparent_film = false;
+  bool lamps = false, background = false, world_light = false, transparent_film = false;
+  rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
 gl::ProgramSource depth_program(const film::Film& film);
@@ -76,7 +77,8 @@ class Realtime {
   gpu_scene::Camera camera_;
   Settings settings_;
   plan::Effects plan_;
-  bool glossy_ = false, emission_ = false, lamps_ = false, shadows_ = false, soft_ = false;
+  rasterize::GBufferOptions surfaces_;
+  bool lamps_ = false, shadows_ = false, soft_ = false;
   bool alpha_ = false, background_ = false, world_light_ = false, depth_ = false;
   bool emissive_light_ = false, single_ = false, filtered_ = false, cascades_ = false;
   std::vector<scene::Light> lights_;

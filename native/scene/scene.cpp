@@ -224,6 +224,7 @@ Facts Scene::facts() const {
     facts.normal_map |= m.normal_map;
     facts.glossy |= m.glossy;
     facts.transmission |= m.transmission;
+    facts.layers |= m.layers;
   }
   for (const Light& light : lights_) {
     ++facts.lamps[int(light.type)];

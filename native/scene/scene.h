@@ -106,6 +106,7 @@ struct MaterialFacts {
   bool normal_map = false;
   bool glossy = true;
   bool transmission = false;
+  bool layers = false;  // a coat or a sheen over the rest
 };
 
 struct Material {
@@ -133,6 +134,7 @@ struct Facts {
   int shadow_lamps[4] = {0, 0, 0, 0};
   bool extended_lamps = false;  // some lamp has an extent, so it casts penumbrae
   bool alpha = false, emission = false, normal_map = false, glossy = false, transmission = false;
+  bool layers = false;
   bool world = false;           // the world is not black
   int lamp_count() const { return lamps[0] + lamps[1] + lamps[2] + lamps[3]; }
   int shadow_lamp_count() const {

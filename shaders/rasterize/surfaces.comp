@@ -15,6 +15,12 @@ layout(binding = 3, rgba16f) writeonly uniform image2D out_specular;
 #if EMISSION
 layout(binding = 4, rgba32f) writeonly uniform image2D out_emission;
 #endif
+#if TRANSMISSION
+layout(binding = 5, rgba32ui) writeonly uniform uimage2D out_transmission;
+#endif
+#if LAYERS
+layout(binding = 6, rgba32ui) writeonly uniform uimage2D out_layers;
+#endif
 layout(location = 2) uniform uint bin;
 
 void main() {
@@ -31,14 +37,23 @@ void main() {
 
   imageStore(out_position, pixel, vec4(hit.position, hit.bulge));
   imageStore(out_normals, pixel,
-             uvec4(pack_unit(surface.normal), pack_unit(hit.normal),
+             uvec4(pack_unit(surface.normal), pack_unit(surface.smooth_normal),
                    pack_unit(hit.geometric_normal),
-                   packUnorm4x8(vec4(clamp(surface.transmission, 0.0, 1.0), 0.0))));
+                   pack_grazing(surface.grazing, surface.specular_ior)));
   imageStore(out_diffuse, pixel, vec4(surface.diffuse, surface.diffuse_roughness));
 #if GLOSSY
   imageStore(out_specular, pixel, vec4(surface.specular, surface.roughness));
 #endif
 #if EMISSION
   imageStore(out_emission, pixel, vec4(surface.emission, 1.0));
+#endif
+#if TRANSMISSION
+  imageStore(out_transmission, pixel,
+             pack_transmission(surface.transmission, surface.transmission_roughness, surface.ior));
+#endif
+#if LAYERS
+  imageStore(out_layers, pixel,
+             pack_layers(surface.coat, surface.coat_roughness, surface.coat_normal, surface.sheen,
+                         surface.sheen_roughness));
 #endif
 }

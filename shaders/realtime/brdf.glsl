@@ -1,4 +1,5 @@
 // Lobes and falloffs of direct light. Each lobe is without its cosine; Cycles is the reference.
+#include "base/fresnel.glsl"
 
 const float PI = 3.14159265359;
 
@@ -7,34 +8,98 @@ float fifth_power(float x) {
   return squared * squared * x;
 }
 
-// Burley's diffuse lobe (Burley 2012), or Lambert's for roughness < 0; without the albedo.
+vec3 half_vector(vec3 n, vec3 v, vec3 l) { return normalize(l + v + 1.0e-12 * n); }
+
+// Burley's diffuse lobe (Burley 2012) for roughness 0..1; below, at -1 - roughness, the improved
+// qualitative model of Oren and Nayar (Fujii), which without roughness is Lambert's. Without albedo.
 float diffuse_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
-  if (roughness < 0.0) return 1.0 / PI;
-  vec3 h = normalize(l + v + 1.0e-12 * n);
-  float lh = dot(l, h);
+  float nl = clamp(dot(n, l), 0.0, 1.0), nv = clamp(dot(n, v), 0.0, 1.0);
+  if (roughness < 0.0) {
+    float r = -1.0 - roughness;
+    float across = dot(l, v) - nl * nv;
+    if (across > 0.0) across /= max(max(nl, nv), 1.0e-6);
+    return (1.0 + r * across) / (PI + (0.5 * PI - 2.0 / 3.0) * r);
+  }
+  float lh = dot(l, half_vector(n, v, l));
   float f90 = 0.5 + 2.0 * roughness * lh * lh;
-  float in_light = fifth_power(1.0 - clamp(dot(n, l), 0.0, 1.0));
-  float in_view = fifth_power(1.0 - clamp(dot(n, v), 0.0, 1.0));
-  return (1.0 + (f90 - 1.0) * in_light) * (1.0 + (f90 - 1.0) * in_view) / PI;
+  return (1.0 + (f90 - 1.0) * fifth_power(1.0 - nl)) * (1.0 + (f90 - 1.0) * fifth_power(1.0 - nv)) / PI;
 }
 
-vec3 schlick(vec3 f0, float cosine) {
-  // Nothing reflects at grazing angles what reflects nothing at normal incidence.
-  float f90 = clamp(50.0 * max(max(f0.r, f0.g), f0.b), 0.0, 1.0);
-  return f0 + (f90 - f0) * fifth_power(1.0 - clamp(cosine, 0.0, 1.0));
+// Share of white light from everywhere that the diffuse lobe sends back. Oren and Nayar's is exact;
+// Burley's is a fit to its quadrature, off by at most 2.5 %.
+float diffuse_albedo(float roughness, float nv) {
+  nv = clamp(nv, 1.0e-3, 1.0);
+  if (roughness < 0.0) {
+    float r = -1.0 - roughness;
+    float sine = sqrt(1.0 - nv * nv);
+    float g = sine * (acos(nv) - sine * nv) +
+              2.0 / 3.0 * (sine / nv * (1.0 - sine * sine * sine) - sine);
+    return (PI + r * g) / (PI + (0.5 * PI - 2.0 / 3.0) * r);
+  }
+  float grazing = fifth_power(1.0 - nv);
+  return mix(0.976 - 0.488 * grazing, 1.035 + 0.55 * grazing, roughness);
 }
 
-// Single-scatter GGX with height-correlated Smith masking (Heitz 2014).
-vec3 glossy_lobe(vec3 f0, float roughness, vec3 n, vec3 v, vec3 l) {
-  float alpha = max(roughness * roughness, 1.0e-3);
+// GGX with height-correlated Smith masking (Heitz 2014), before Fresnel's term.
+float ggx_lobe(float alpha, vec3 n, vec3 v, vec3 l) {
   float a2 = alpha * alpha;
-  vec3 h = normalize(l + v + 1.0e-12 * n);
   float nl = clamp(dot(n, l), 1.0e-5, 1.0), nv = clamp(dot(n, v), 1.0e-5, 1.0);
-  float nh = clamp(dot(n, h), 0.0, 1.0);
+  float nh = clamp(dot(n, half_vector(n, v, l)), 0.0, 1.0);
   float t = nh * nh * (a2 - 1.0) + 1.0;
   float distribution = a2 / (PI * t * t);
   float masking = 0.5 / (nl * sqrt(a2 + (1.0 - a2) * nv * nv) + nv * sqrt(a2 + (1.0 - a2) * nl * nl));
-  return schlick(f0, dot(l, h)) * min(distribution * masking, 1.0e8);
+  return min(distribution * masking, 1.0e8);
+}
+
+float alpha_from_roughness(float roughness) { return max(roughness * roughness, 1.0e-3); }
+
+// Single-scatter GGX whose reflectance rises from `f0` to `f90` as a dielectric's of index `ior` does.
+vec3 glossy_lobe(vec3 f0, vec3 f90, float ior, float roughness, vec3 n, vec3 v, vec3 l) {
+  float rise = fresnel_rise(dot(l, half_vector(n, v, l)), ior);
+  return mix(f0, f90, rise) * ggx_lobe(alpha_from_roughness(roughness), n, v, l);
+}
+
+const float COAT_IOR = 1.5;
+
+// A clear coat: GGX; or, where roughness is negative, that of Disney's BRDF as Cycles has it before
+// 4.0 (Burley 2012: GTR1, masked as if of roughness .25 squared).
+float coat_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
+  vec3 h = half_vector(n, v, l);
+  float fresnel = fresnel_dielectric(dot(l, h), COAT_IOR);
+  float alpha = alpha_from_roughness(roughness);
+  if (roughness > 0.0) return fresnel * ggx_lobe(alpha, n, v, l);
+  float nl = clamp(dot(n, l), 1.0e-5, 1.0), nv = clamp(dot(n, v), 1.0e-5, 1.0);
+  float nh = clamp(dot(n, h), 0.0, 1.0);
+  float a2 = alpha * alpha;
+  const float MASK = 0.0625;
+  float distribution =
+      alpha < 1.0 ? (a2 - 1.0) / (PI * log(a2) * (1.0 + (a2 - 1.0) * nh * nh)) : 1.0 / PI;
+  float masking = 1.0 / ((nl + sqrt(MASK + (1.0 - MASK) * nl * nl)) *
+                         (nv + sqrt(MASK + (1.0 - MASK) * nv * nv)));
+  return fresnel * distribution * masking;
+}
+
+// Ashikhmin's velvet of that deviation; for negative roughness the sheen of Disney's BRDF.
+float sheen_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
+  vec3 h = half_vector(n, v, l);
+  float lh = clamp(dot(l, h), 1.0e-5, 1.0);
+  if (roughness < 0.0) return fifth_power(1.0 - lh);
+  float nl = clamp(dot(n, l), 1.0e-5, 1.0), nv = clamp(dot(n, v), 1.0e-5, 1.0);
+  float nh = clamp(dot(n, h), 1.0e-5, 1.0 - 1.0e-5);
+  float sine2 = 1.0 - nh * nh;
+  float inverse = 1.0 / max(roughness * roughness, 1.0e-4);
+  float distribution = exp(-nh * nh / sine2 * inverse) * inverse / (PI * sine2 * sine2);
+  float masking = min(1.0, 2.0 * nh / lh * min(nl, nv));
+  return 0.25 * distribution * masking / (nl * nv);
+}
+
+// Share of white light from everywhere that the sheen sends back: fits to quadrature.
+float sheen_albedo(float roughness, float nv) {
+  nv = clamp(nv, 0.0, 1.0);
+  float x = 1.0 - nv;
+  if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
+  float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
+  return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
 }
 
 // Where a mapped normal leaves the interpolated one, light fades out before the surface's own
@@ -45,6 +110,11 @@ float bump_shadowing(vec3 smooth_normal, vec3 n, vec3 l) {
   if (g >= 1.0) return 1.0;
   if (g <= 0.0) return 0.0;
   return g * (1.0 + g - g * g);
+}
+
+// The share of a light that falls on a surface from `l`.
+float incidence(vec3 smooth_normal, vec3 n, vec3 l) {
+  return bump_shadowing(smooth_normal, n, l) * max(dot(n, l), 0.0);
 }
 
 // Measured in Cycles 3.4: the cone's smooth step times the cosine, as of a disk square to the axis.

@@ -47,12 +47,11 @@ float ggx_albedo(float r, float mu) {
 
 // Share of white light that a rough mirror of reflectance f0 reflects. The part that Fresnel's
 // factor takes to grazing angles is Karis' fit (2013).
-vec3 environment_reflectance(vec3 f0, float roughness, float nv) {
+vec3 environment_reflectance(vec3 f0, vec3 f90, float roughness, float nv) {
   vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
   float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
   float all = ggx_albedo(roughness, nv);
   float grazing = clamp(1.04 * a + r.w, 0.0, all);
-  float f90 = clamp(50.0 * max(max(f0.r, f0.g), f0.b), 0.0, 1.0);
   return f0 * (all - grazing) + f90 * grazing;
 }
 #endif
@@ -72,11 +71,20 @@ void main() {
 #endif
 #endif
 #if WORLD_LIGHT
-  diffuse += g.diffuse * world_diffuse(g.normal);
+  float nv = max(dot(g.normal, v), 0.0);
+  diffuse += g.diffuse * diffuse_albedo(g.diffuse_roughness, nv) * world_diffuse(g.normal);
   // Reflected and refracted light of the world from its blurred radiance, until rays are traced.
 #if GLOSSY
-  glossy += environment_reflectance(g.specular, g.roughness, max(dot(g.normal, v), 0.0)) *
+  glossy += environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
             world_diffuse(reflect(-v, g.normal));
+#endif
+#if LAYERS
+  diffuse += g.sheen * sheen_albedo(g.sheen_roughness, nv) * world_diffuse(g.normal);
+#if GLOSSY
+  glossy += environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
+                                    abs(g.coat_roughness), max(dot(g.coat_normal, v), 0.0)) *
+            world_diffuse(reflect(-v, g.coat_normal));
+#endif
 #endif
   vec3 transmitted = g.transmission * world_diffuse(-v);
 #else
@@ -94,6 +102,7 @@ void main() {
     transmitted = vec3(0.0);
     emitted = vec3(0.0);
     g.diffuse = vec3(0.0);
+    g.sheen = vec3(0.0);
     g.specular = vec3(0.0);
     g.normal = vec3(0.0);
   }
@@ -114,7 +123,7 @@ void main() {
   film_add(FILM_NORMAL, pixel, vec4(g.normal, 0.0));
 #endif
 #ifdef FILM_DIFFCOL
-  film_add(FILM_DIFFCOL, pixel, vec4(g.diffuse, 0.0));
+  film_add(FILM_DIFFCOL, pixel, vec4(g.diffuse + g.sheen, 0.0));
 #endif
 #ifdef FILM_DIFFDIR
   film_add(FILM_DIFFDIR, pixel, vec4(diffuse, 0.0));

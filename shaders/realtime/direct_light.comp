@@ -61,19 +61,25 @@ void main() {
     }
     // Zero-length directions and absurd energies must not become NaN.
     irradiance = clamp(irradiance, vec3(-1.0e30), vec3(1.0e30));
-    float lit = bump_shadowing(g.smooth_normal, g.normal, to_light) *
-                max(dot(g.normal, to_light), 0.0);
 #if SHADOWS
-    if (light.shadow != NO_SHADOW) lit *= shadow(light, receiver, to_light);
+    if (light.shadow != NO_SHADOW) irradiance *= shadow(light, receiver, to_light);
 #endif
-    vec3 arriving = irradiance * lit;
-    diffuse += arriving * diffuse_lobe(g.diffuse_roughness, g.normal, v, to_light);
+    vec3 arriving = irradiance * incidence(g.smooth_normal, g.normal, to_light);
+    diffuse += arriving * g.diffuse * diffuse_lobe(g.diffuse_roughness, g.normal, v, to_light);
 #if GLOSSY
-    glossy += arriving * glossy_lobe(g.specular, g.roughness, g.normal, v, to_light);
+    glossy += arriving * glossy_lobe(g.specular, g.grazing, g.specular_ior, g.roughness, g.normal, v,
+                                     to_light);
+#endif
+#if LAYERS
+    diffuse += arriving * g.sheen * sheen_lobe(g.sheen_roughness, g.normal, v, to_light);
+#if GLOSSY
+    glossy += irradiance * incidence(g.smooth_normal, g.coat_normal, to_light) * g.coat *
+              coat_lobe(g.coat_roughness, g.coat_normal, v, to_light);
+#endif
 #endif
   }
   vec4 before = texelFetch(diffuse_before, pixel, 0);
-  imageStore(diffuse_light, pixel, vec4(before.rgb + diffuse * g.diffuse, 1.0));
+  imageStore(diffuse_light, pixel, vec4(before.rgb + diffuse, 1.0));
 #if GLOSSY
   before = texelFetch(glossy_before, pixel, 0);
   imageStore(glossy_light, pixel, vec4(before.rgb + glossy, 1.0));

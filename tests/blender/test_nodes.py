@@ -146,7 +146,7 @@ class TestFacts:
     def test_plain(self, scene):
         facts = Tree().compile().facts
         assert facts == {'alpha': False, 'emission': False, 'normal_map': False, 'glossy': True,
-                         'transmission': False, 'attributes': []}
+                         'transmission': False, 'layers': False, 'attributes': []}
 
     def test_alpha(self, scene):
         tree = Tree()
@@ -349,10 +349,10 @@ class TestUnsupported:
     def test_named_once(self, scene, tmp_path):
         tree = Tree()
         for name in ('Base Color', 'Roughness'):
-            tree.link(tree.add('ShaderNodeTexNoise'), 'Color', tree.surface, name)
+            tree.link(tree.add('ShaderNodeTexSky'), 'Color', tree.surface, name)
         shader = tree.compile()
         assert len(shader.warnings) == 1
-        assert shader.warnings[0] == ("Material 'Test': node Noise Texture is not supported yet; a "
+        assert shader.warnings[0] == ("Material 'Test': node Sky Texture is not supported yet; a "
                                       'medium grey is used instead.')
         check(tmp_path, [shader])
 

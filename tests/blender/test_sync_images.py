@@ -56,6 +56,18 @@ class TestImages:
         assert pixels.dtype == np.float32 and pixels[0, 0].tolist() == [7, 0.5, 0, 1]
         assert not srgb
 
+    def test_unusual_colour_space_is_named(self, sync):
+        image = bpy.data.images.new('Made', 4, 2)
+        for name in ('Linear ACEScg', 'ACEScg'):  # before and since Blender 4.0
+            try:
+                image.colorspace_settings.name = name
+            except TypeError:
+                continue
+        self.textured(image)
+        _, report = sync.run()
+        (warning,) = report.warnings
+        assert "'Made'" in warning and 'ACEScg' in warning and 'linear' in warning
+
     def test_file(self, sync, tmp_path):
         self.textured(self.saved(tmp_path))
         sync.run()

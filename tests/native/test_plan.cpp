@@ -39,6 +39,8 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
        [](auto& f, auto&) { f.emission = true; },
        {"emission", "emissive_light", "emissive_shadows", "filtered_penumbrae"}},
       {"glossy", [](auto& f, auto&) { f.glossy = true; }, {"glossy"}},
+      {"glass", [](auto& f, auto&) { f.transmission = true; }, {"transmission"}},
+      {"a coat or a sheen", [](auto& f, auto&) { f.layers = true; }, {"layers"}},
       {"a point lamp without shadow", [](auto& f, auto&) { f.lamps[0] = 1; }, {"direct_light"}},
       {"a point lamp",
        [](auto& f, auto&) { f.lamps[0] = f.shadow_lamps[0] = 1; },
@@ -116,7 +118,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
     scene::Facts f;
     f.triangles = bits & 1 ? 5 : 0;
     f.instances = bits & 1;
-    f.alpha = f.emission = f.normal_map = f.glossy = bits & 2;
+    f.alpha = f.emission = f.normal_map = f.glossy = f.transmission = f.layers = bits & 2;
     for (int i = 0; i < 4; ++i) {
       f.lamps[i] = bits & 4 ? i + 1 : 0;
       f.shadow_lamps[i] = bits & 8 ? f.lamps[i] : 0;
@@ -128,7 +130,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 13u + 4u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 15u + 4u + size_t(film::kPassCount));
   }
 }
 

@@ -22,6 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Each of the four switches by a bit of its own.
+rasterize::GBufferOptions surfaces(int bits) {
+  return {.glossy = bool(bits & 1),
+          .emission = bool(bits & 2),
+          .transmission = bool(bits & 4),
+          .layers = bool(bits & 8)};
+}
+
 // Calls everything that generated code may call.
 constexpr const char* kEverything =
     "void evaluate_material(const Hit hit, inout Surface surface) {\n"
@@ -33,17 +41,18 @@ constexpr const char* kEverything =
     "                     normal_map_world(hit, color.rgb, 0.5));\n"
     "#if IMAGE_COUNT > 0\n"
     "  color += sample_image(hit, 0, uv, false) + sample_image(hit, 1, uv, true);\n"
+    "  color += sample_image_cubic(1, uv, 0.1, true);\n"
     "#endif\n"
     "  if (hit.backfacing) color.rgb *= hit.view * hit.geometric_normal * hit.position;\n"
     "  closure_diffuse(surface, vec3(0.1), color.rgb, 0.5, normal);\n"
     "  closure_glossy(surface, vec3(0.1), color.rgb, 0.3, normal);\n"
-    "  closure_glass(surface, vec3(0.1), color.rgb, 0.1, 1.5, normal);\n"
-    "  closure_refraction(surface, vec3(0.1), color.rgb, 0.1, 1.5, hit.normal);\n"
+    "  closure_glass(hit, surface, vec3(0.1), color.rgb, 0.1, 1.5, normal);\n"
+    "  closure_refraction(hit, surface, vec3(0.1), color.rgb, 0.1, 1.5, hit.normal);\n"
     "  closure_transparent(surface, vec3(0.1), place);\n"
     "  closure_emission(surface, vec3(0.1), place);\n"
     "  Principled p = principled_defaults(hit);\n"
-    "  p.metallic = p.specular_tint = p.transmission = p.alpha = param(0).x;\n"
-    "  p.clearcoat = p.sheen = 0.5;\n"
+    "  p.metallic = p.subsurface = p.transmission = p.alpha = param(0).x;\n"
+    "  p.coat = p.sheen = 0.5;\n"
     "  closure_principled_v3(surface, vec3(0.2), p);\n"
     "  closure_principled_v4(surface, vec3(0.2), p);\n"
     "}\n";
@@ -52,7 +61,8 @@ constexpr const char* kPlainWorld =
     "vec3 evaluate_world(vec3 direction) { return param(0).rgb; }\n";
 constexpr const char* kImageWorld =
     "vec3 evaluate_world(vec3 direction) {\n"
-    "  return sample_environment(0, direction).rgb * luminance(param(0).rgb);\n"
+    "  return sample_image_wide(0, direction.xy, 0.0, false).rgb * luminance(param(0).rgb) +\n"
+    "         sample_image_cubic(0, direction.xy, 0.0, true).rgb;\n"
     "}\n";
 
 class Shaders : public ::testing::Test {
@@ -94,33 +104,31 @@ class Shaders : public ::testing::Test {
         if (alpha)
           for (bool depth_only : {false, true})
             add(rasterize::raster_program(&m, {.depth_only = depth_only}));
-        for (bool glossy : {false, true})
-          for (bool emission : {false, true})
-            add(rasterize::surface_program(m, {.glossy = glossy, .emission = emission}));
+        for (int bits = 0; bits < 16; ++bits) add(rasterize::surface_program(m, surfaces(bits)));
         add(rasterize::emitter_program(m));
       }
     for (const char* name : {"bin_count", "bin_offsets", "bin_scatter"})
       add(rasterize::bin_program(name));
     for (bool shadows : {false, true})
-      for (bool glossy : {false, true})
+      for (int bits = 0; bits < 16; ++bits)
         for (bool filtered : {false, true})
-          add(realtime::direct_light_program({shadows, glossy, filtered}));
+          add(realtime::direct_light_program({shadows, filtered, surfaces(bits)}));
     add(rasterize::visible_bounds_program());
 
     // Passes only add stores; each alone, none and all stand for the rest.
     film::Film film;
     const auto with_film = [&](const film::PassSet& passes, bool moments, int bits) {
       film.start(4, 4, passes, moments);
-      add(realtime::compose_program({bool(bits & 1), bool(bits & 2), bool(bits & 4), bool(bits & 8),
-                                     bool(bits & 16), bool(bits & 32)},
+      add(realtime::compose_program({bool(bits & 16), bool(bits & 32), bool(bits & 64),
+                                     bool(bits & 128), surfaces(bits)},
                                     film));
     };
-    for (int bits = 0; bits < 64; ++bits) {
+    for (int bits = 0; bits < 256; ++bits) {
       with_film(film::PassSet().set(), true, bits);
       with_film({}, false, bits);
     }
     for (int pass = 0; pass < film::kPassCount; ++pass)
-      for (int bits : {0, 31}) with_film(film::PassSet().set(size_t(pass)), false, bits);
+      for (int bits : {0, 255}) with_film(film::PassSet().set(size_t(pass)), false, bits);
 
     for (bool moments : {false, true}) {
       film.start(4, 4, film::PassSet().set(size_t(film::Pass::kDepth)), moments);

@@ -102,12 +102,12 @@ TEST(World, AWhiteFurnaceIsWhite) {
     for (const char* ior : {"1.0", "1.5"})
       for (const char* roughness : {"0.0", "1.0"})
         EXPECT_NEAR(
-            in_furnace(fmt::format("closure_refraction(surface, vec3(1.0), vec3(1.0), {}, {}, "
+            in_furnace(fmt::format("closure_refraction(hit, surface, vec3(1.0), vec3(1.0), {}, {}, "
                                    "hit.normal);\n",
                                    roughness, ior),
                        nv),
             1, 5e-3);  // transmission is kept in eight bits
-    EXPECT_NEAR(in_furnace("closure_glass(surface, vec3(1.0), vec3(1.0), 0.0, 1.0, hit.normal);\n",
+    EXPECT_NEAR(in_furnace("closure_glass(hit, surface, vec3(1.0), vec3(1.0), 0.0, 1.0, hit.normal);\n",
                            nv),
                 1, 5e-3);
   }
@@ -231,7 +231,11 @@ std::vector<float> equirectangular(int width, int height,
 glm::dvec3 smooth(const glm::dvec3& d) { return d * 0.4 + 0.5; }
 
 constexpr const char* kImageWorld =
-    "vec3 evaluate_world(vec3 direction) { return sample_environment(0, direction).rgb; }\n";
+    "vec3 evaluate_world(vec3 direction) {\n"
+    "  vec2 uv = vec2(-atan(direction.y, direction.x) * 0.15915494 + 0.5,\n"
+    "                 atan(direction.z, length(direction.xy)) * 0.31830989 + 0.5);\n"
+    "  return sample_image_wide(0, uv, 0.0, false).rgb;\n"
+    "}\n";
 
 TestScene under_image(scene::Image image) {
   TestScene s;

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup -P in_blender.py -- JOB.json
 
-The job: {"scene": path of a .blend or "builder:NAME", "lamps_alone": bool, "size": [width, height] or null,
+The job: {"scene": path of a .blend, "builder:NAME" or "nodes:GROUP", "lamps_alone": bool, "size": [width, height] or null,
 "renders": [{"engine": "CYCLES" or "PANOPTES", "out": path, "samples": n, "shadows": bool, "seed": n,
 "lamp": index of the only lamp that shines, or null for all}]}. Lamps are counted in the order of their names.
 The scene is loaded once; nothing is ever saved over it. Prints "lamps: N".
@@ -107,6 +107,9 @@ def main():
     if job["scene"].startswith("builder:"):
         import builders
         builders.build(job["scene"].removeprefix("builder:"))
+    elif job["scene"].startswith("nodes:"):
+        import node_atlas
+        node_atlas.build(job["scene"].removeprefix("nodes:"))
     else:
         bpy.ops.wm.open_mainfile(filepath=job["scene"])
     scene = bpy.context.scene

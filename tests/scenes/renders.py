@@ -24,6 +24,8 @@ import images  # noqa: E402
 CACHE = ROOT / "build" / "reference-cache"
 SHARED = Path(os.environ.get("PANOPTES_SHARED_SCENES", ROOT.parent / "shared" / "scenes"))
 BLENDER = os.environ.get("PANOPTES_BLENDER", "/usr/bin/blender")
+# Scenes that scripts build, by the prefix of their names.
+BUILT = {"builder:": ("builders.py",), "nodes:": ("node_atlas.py", "node_cases.py", "node_values.py", "node_textures.py", "node_shaders.py")}
 # One render of one picture takes seconds; this only ends what hangs.
 TIME_LIMIT_SECONDS = 1200
 
@@ -33,9 +35,9 @@ class RenderFailed(RuntimeError):
 
 
 def scene_path(name):
-    """The .blend of one of our own scenes, else of a shared one; "builder:NAME" as it is."""
+    """The .blend of one of our own scenes, else of a shared one; "builder:NAME" and "nodes:GROUP" as they are."""
     own = ROOT / "blend_scenes" / f"{name}.blend"
-    return name if name.startswith("builder:") else str(own if own.is_file() else SHARED / f"{name}.blend")
+    return name if name.startswith(tuple(BUILT)) else str(own if own.is_file() else SHARED / f"{name}.blend")
 
 
 def panoptes_is_built():
@@ -57,7 +59,8 @@ def _digest(path):
 def _key(scene, request):
     """A name for what Cycles would render."""
     sources = [_digest(HERE / "in_blender.py")]
-    sources += [_digest(HERE / "builders.py")] if scene.startswith("builder:") else [_digest(scene)]
+    scripts = next((found for prefix, found in BUILT.items() if scene.startswith(prefix)), None)
+    sources += [_digest(HERE / script) for script in scripts] if scripts else [_digest(scene)]
     text = json.dumps([sources, scene.rpartition("/")[2], blender_version(), request], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
@@ -70,7 +73,7 @@ def picture(engine, samples=None, shadows=True, seed=1, lamp=None):
 def render(name, pictures, lamps_alone=False, size=None):
     """Renders the scene once for each of `pictures`.
 
-    name: a scene of blend_scenes, a shared one, or "builder:NAME". size: (width, height), None for the file's own.
+    name: a scene of blend_scenes, a shared one, "builder:NAME" or "nodes:GROUP". size: (width, height), None for the file's own.
     Returns (list of {pass: float32[H, W, C]} in the order of `pictures`, number of lamps).
     Raises RenderFailed.
     """

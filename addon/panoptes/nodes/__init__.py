@@ -12,7 +12,8 @@ import numpy as np
 from .. import compat
 from . import helpers
 from .compiler import UNDEFORMED, Compiler, deep_recursion  # noqa: F401
-from . import closures, colors, converters, inputs, textures  # noqa: F401 (register their nodes)
+from . import (bump, closures, colors, converters, images,  # noqa: F401 (register their nodes)
+               inputs, noise, principled, spaces, spectra, textures)
 from .scope import Scope, resolve
 from .world import write_world
 
@@ -22,9 +23,10 @@ class CompiledShader(NamedTuple):
 
     `code` is GLSL, identical for trees of the same structure. `params` is float32[P, 4], at least
     one row. `textures` lists (Image, 'LINEAR' or 'CLOSEST', 'REPEAT', 'EXTEND' or 'CLIP',
-    ImageUser). `facts` are the booleans alpha, emission, normal_map, glossy and transmission, and
-    'attributes', the names behind ATTRIBUTE(n). `constant` is a world's radiance (r, g, b) where it
-    is the same in every direction, else None. `warnings` are sentences for the artist.
+    ImageUser). `facts` are the booleans alpha, emission, normal_map, glossy, transmission and
+    layers (a coat or a sheen), and 'attributes', the names behind ATTRIBUTE(n). `constant` is a
+    world's radiance (r, g, b) where it is the same in every direction, else None. `warnings` are
+    sentences for the artist.
     """
 
     code: str
@@ -38,7 +40,8 @@ class CompiledShader(NamedTuple):
 
 def _finish(compiler, signature, result_lines, constant=None):
     body = ''.join(f'    {line}\n' for line in compiler.lines + result_lines)
-    code = f'{helpers.source(compiler.helpers)}{signature}\n{{\n{body}}}\n'
+    before = helpers.source(compiler.helpers) + ''.join(compiler.functions)
+    code = f'{before}{signature}\n{{\n{body}}}\n'
     rows = compiler.parameters.rows or [[0.0, 0.0, 0.0, 0.0]]
     params = np.nan_to_num(np.array(rows, np.float32), posinf=3e38, neginf=-3e38)
     facts = dict(compiler.facts, attributes=list(compiler.attributes))
@@ -61,7 +64,7 @@ def _output_node(tree, kind):
 
 def compile_material(material):
     """Compile a (preferably evaluated) Material; never fails on account of its nodes."""
-    compiler = Compiler('material', _quoted('Material', material.name))
+    compiler = Compiler('material', _quoted('Material', material.name), material.pass_index)
     if not compat.uses_nodes(material):
         color = compiler.parameter('color', tuple(material.diffuse_color)[:3]).code
         compiler.statement(
@@ -71,12 +74,12 @@ def compile_material(material):
         if output is not None:
             with deep_recursion():
                 scope = Scope(material.node_tree)
+                bump.write_displacement(compiler, material,
+                                        resolve(scope, output.inputs['Displacement']))
                 closures.write_surface(compiler, resolve(scope, output.inputs['Surface']))
-            for name, effect in (('Volume', 'the inside is empty'),
-                                 ('Displacement', 'the surface stays smooth')):
-                if resolve(scope, output.inputs[name]).node is not None:
-                    compiler.warn_once(name, f'{compiler.owner}: {name.lower()} is not supported '
-                                             f'yet; {effect}.')
+            if resolve(scope, output.inputs['Volume']).node is not None:
+                compiler.warn_once('Volume', f'{compiler.owner}: volume is not supported yet; '
+                                             'the inside is empty.')
     return _finish(compiler, 'void evaluate_material(const Hit hit, inout Surface surface)', [])
 
 

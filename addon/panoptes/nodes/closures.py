@@ -6,7 +6,6 @@ after all that use it, so that each closure is written once with the sum of its 
 many mixes lead to it.
 """
 
-from .. import compat
 from .compiler import NodeUse
 from .scope import resolve
 from .values import Value, convert, socket_kind
@@ -145,7 +144,7 @@ def _emit(compiler, weight, radiance):
     compiler.statement(f'closure_emission(surface, {weight}, {radiance});')
 
 
-def _is_black(use, color, strength):
+def is_black(use, color, strength):
     """Tell whether an emission is known to be zero: by its colour or by its strength."""
     if use.constant(strength) == 0.0:
         return True
@@ -180,6 +179,8 @@ def diffuse(use, weight):
 def glossy(use, weight):
     """Glossy BSDF."""
     use.compiler.facts['glossy'] = True
+    if getattr(use.node, 'distribution', '') in ('BECKMANN', 'ASHIKHMIN_SHIRLEY'):
+        use.compiler.warn(use.node, 'GGX', 'has one distribution only')
     use.compiler.statement(
         f'closure_glossy(surface, {weight}, {_color(use)}, {_roughness(use)}, {use.normal()});')
 
@@ -187,7 +188,7 @@ def glossy(use, weight):
 def _refractive(use, weight, function):
     use.compiler.facts['transmission'] = True
     use.compiler.statement(
-        f'{function}(surface, {weight}, {_color(use)}, {_roughness(use)}, '
+        f'{function}(hit, surface, {weight}, {_color(use)}, {_roughness(use)}, '
         f'{_float(use, "IOR", "1.5")}, {use.normal()});')
 
 
@@ -204,6 +205,18 @@ def refraction(use, weight):
     _refractive(use, weight, 'closure_refraction')
 
 
+@closure('BSDF_VELVET', 'BSDF_SHEEN')
+def velvet(use, weight):
+    """Velvet BSDF (Sheen BSDF from 4.0 on): Ashikhmin's lobe."""
+    compiler = use.compiler
+    compiler.facts['layers'] = True
+    if getattr(use.node, 'distribution', 'ASHIKHMIN') != 'ASHIKHMIN':
+        compiler.warn(use.node, "Ashikhmin's", 'has no microfiber distribution yet')
+    sigma = _float(use, 'Sigma' if use.has_input('Sigma') else 'Roughness', '1.0')
+    compiler.statement(
+        f'closure_velvet(surface, {weight}, {_color(use)}, {sigma}, {use.normal()});')
+
+
 @closure('BSDF_TRANSPARENT')
 def transparent(use, weight):
     """Transparent BSDF."""
@@ -214,7 +227,7 @@ def transparent(use, weight):
 @closure('EMISSION', 'BACKGROUND')
 def emission(use, weight):
     """Emission node (a Background linked to a surface shines as well)."""
-    if _is_black(use, 'Color', 'Strength'):
+    if is_black(use, 'Color', 'Strength'):
         return
     _emit(use.compiler, weight, f'{use.get("Color", "color")} * {use.get("Strength", "float")}')
 
@@ -241,8 +254,6 @@ def _eevee_specular(use, weight):
 _SUBSTITUTES = {
     'SUBSURFACE_SCATTERING': ('Diffuse BSDF', diffuse),
     'BSDF_TRANSLUCENT': ('Diffuse BSDF', diffuse),
-    'BSDF_VELVET': ('Diffuse BSDF', diffuse),
-    'BSDF_SHEEN': ('Diffuse BSDF', diffuse),
     'BSDF_TOON': ('Diffuse BSDF', diffuse),
     'BSDF_HAIR': ('Diffuse BSDF', diffuse),
     'BSDF_HAIR_PRINCIPLED': ('Diffuse BSDF', diffuse),
@@ -251,56 +262,3 @@ _SUBSTITUTES = {
     'EEVEE_SPECULAR': ('Diffuse BSDF', _eevee_specular),
     'BSDF_RAY_PORTAL': ('Transparent BSDF', transparent),
 }
-
-# Inputs of the Principled BSDF that no closure reads yet, by the weight that switches each on.
-_PRINCIPLED_UNREAD = ('Subsurface', 'Subsurface Weight', 'Anisotropic', 'Thin Film Thickness')
-
-
-@closure('BSDF_PRINCIPLED')
-def principled(use, weight):
-    """Principled BSDF, both generations of its sockets.
-
-    A term whose weight is an unlinked 0 (emission, transmission, coat, sheen; alpha at 1) is left
-    at its default, so that the shader compiler removes it.
-    """
-    compiler = use.compiler
-    names = compat.PRINCIPLED_SOCKETS
-    name = f'p{compiler.take_number()}'
-    lines = [f'Principled {name} = principled_defaults(hit);']
-
-    def assign(field, expression):
-        lines.append(f'{name}.{field} = {expression};')
-
-    assign('base_color', use.get('Base Color', 'color'))
-    for field in ('metallic', 'roughness', 'specular', 'specular_tint', 'ior'):
-        assign(field, use.get(names[field], 'float'))
-    for field in ('transmission', 'clearcoat', 'sheen'):
-        if use.constant(names[field]) != 0.0:
-            assign(field, use.get(names[field], 'float'))
-            if field == 'clearcoat':
-                roughness = names['clearcoat_roughness']
-                assign('clearcoat_roughness', use.get(roughness, 'float'))
-            if field == 'transmission':
-                compiler.facts['transmission'] = True
-    if use.constant('Alpha') != 1.0:
-        compiler.facts['alpha'] = True
-        assign('alpha', use.get('Alpha', 'float'))
-    if not _is_black(use, names['emission'], 'Emission Strength'):
-        compiler.facts['emission'] = True
-        color, strength = use.get(names['emission'], 'color'), use.get('Emission Strength', 'float')
-        assign('emission', f'{color} * {strength}')
-    if use.is_linked('Normal'):
-        assign('normal', use.get('Normal', 'vector'))
-    if any(use.constant(names[field]) != 0.0 for field in ('specular', 'metallic', 'clearcoat')):
-        compiler.facts['glossy'] = True
-    if compiler.facts['transmission']:
-        compiler.facts['glossy'] = True
-
-    for unread in _PRINCIPLED_UNREAD:
-        if use.has_input(unread) and use.constant(unread) != 0.0:
-            compiler.warn_once(
-                ('principled', unread),
-                f'{compiler.owner}: input {unread} of node {use.node.bl_label} is not supported '
-                'yet; it is left out.')
-    lines.append(f'closure_principled_v{compat.PRINCIPLED_GENERATION}(surface, {weight}, {name});')
-    compiler.lines.extend(lines)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colour nodes: Mix, Invert, Gamma, Brightness/Contrast, Hue/Saturation, RGB to BW."""
 
+from . import color_helpers  # noqa: F401 (registers the GLSL)
 from .compiler import value_node
 from .values import Value
 

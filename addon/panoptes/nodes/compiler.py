@@ -60,25 +60,26 @@ class NodeUse:
         """Tell whether the node has an input of this identifier or name."""
         return compat.find_socket(self.node.inputs, name) is not None
 
-    def _source(self, name):
+    def source(self, name):
+        """Return the `Source` of an input, or None where the node has no such input."""
         socket = compat.find_socket(self.node.inputs, name)
         return None if socket is None else resolve(self.scope, socket)
 
     def is_linked(self, name):
         """Tell whether another node feeds this input."""
-        source = self._source(name)
+        source = self.source(name)
         return source is not None and source.node is not None
 
     def constant(self, name):
         """Return the number(s) of an input that no node feeds, else None."""
-        source = self._source(name)
+        source = self.source(name)
         if source is None or source.node is not None:
             return None
         return self.compiler.source_number(source)
 
     def value(self, name):
         """Return the `Value` that arrives at an input, in the kind of the input socket."""
-        source = self._source(name)
+        source = self.source(name)
         if source is None:
             return Value('float', '0.0', 0.0)
         return self.compiler.source_value(source)
@@ -107,20 +108,24 @@ class Compiler:
     """State of one compilation.
 
     `domain` is 'material' or 'world'; `owner` is how warnings name the data-block
-    ("Material 'Oak'"). Afterwards: `lines`, `helpers`, `parameters.rows`, `textures`
-    (image, interpolation, extension, image user), `attributes` (names), `facts`, `warnings`.
+    ("Material 'Oak'"), `pass_index` its number for the Object Info node. Afterwards: `lines`, `functions` (texts of functions of a hit),
+    `helpers`, `parameters.rows`, `textures` (image, interpolation, extension, image user), `attributes` (names), `facts`, `warnings`.
     """
 
-    def __init__(self, domain, owner):
+    def __init__(self, domain, owner, pass_index=0):
         self.domain = domain
         self.owner = owner
+        self.pass_index = pass_index
         self.parameters = ParameterBlock()
         self.lines = []
+        self.functions = []
         self.helpers = []
+        # What shading_normal() answers in a material.
+        self.normal = 'hit.normal'
         self.textures = []
         self.attributes = []
         self.facts = {'alpha': False, 'emission': False, 'normal_map': False, 'glossy': False,
-                      'transmission': False}
+                      'transmission': False, 'layers': False}
         self.warnings = []
         self.depends_on_objects = False
         self._texture_slots = {}
@@ -158,6 +163,23 @@ class Compiler:
         """Write one statement."""
         self.lines.append(line)
 
+    def function(self, prefix, create, kind='float'):
+        """Write a function of a hit whose value `create()` returns; return its name.
+
+        What `create` asks for is written inside it, even if it is written outside as well.
+        """
+        name = f'{prefix}{self.take_number()}'
+        outside = self.lines, self._memo, self._shared, self.normal
+        # Outputs that are being computed stay known, or a loop of links would never end.
+        unfinished = {key: None for key, value in self._memo.items() if value is None}
+        self.lines, self._memo, self._shared, self.normal = [], unfinished, {}, 'hit.normal'
+        result = create()
+        body = ''.join(f'    {line}\n' for line in self.lines)
+        self.lines, self._memo, self._shared, self.normal = outside
+        self.functions.append(
+            f'{"float" if kind == "float" else "vec3"} {name}(const Hit hit)\n{{\n{body}    return {result};\n}}\n')
+        return name
+
     def helper(self, name):
         """Make a helper function (and those it calls) available; return its name."""
         helpers.require(self.helpers, name)
@@ -173,7 +195,7 @@ class Compiler:
 
     def shading_normal(self):
         """The normal that a node sees when none is linked, world axes."""
-        return 'hit.normal' if self.domain == 'material' else '(-direction)'
+        return self.normal if self.domain == 'material' else '(-direction)'
 
     def view_vector(self):
         """Unit vector towards the viewer, world axes."""

@@ -199,11 +199,11 @@ def clamp(use, output):
     return use.declare('float', f'min(max({number}, {low}), {high})')
 
 
-def _table_lookup(use, rows, position, interpolate=True):
+def _table_lookup(use, rows, position, interpolate=True, extrapolate=False):
     """Return a vec4 variable: the table `rows` (a list of 4 floats each) read at 0..1."""
     compiler = use.compiler
     first = compiler.parameters.table(rows)
-    function = compiler.helper('node_table')
+    function = compiler.helper('node_extended_table' if extrapolate else 'node_table')
     flag = 'true' if interpolate else 'false'
     return compiler.declare_vec4(
         f'{function}({first}, {len(rows) - 1}, {position}, {flag})')
@@ -222,63 +222,53 @@ def color_ramp(use, output):
     return Value('float', f'{variable}.w') if output == 'Alpha' else Value('color', f'{variable}.xyz')
 
 
-def _curve_tables(mapping, curves, low, high):
-    """Sample curves over low..high; rows of (curve 0, curve 1, curve 2, 0)."""
-    mapping.initialize()
-    step = (high - low) / (_TABLE_SIZE - 1)
-    rows = []
-    for i in range(_TABLE_SIZE):
-        position = low + i * step
-        samples = [mapping.evaluate(curve, position) for curve in curves]
-        rows.append((*samples, *([0.0] * (4 - len(samples)))))
-    return rows
-
-
 def _curve_range(mapping, count):
     """Return the range of positions that the points of the first `count` curves span."""
     points = [p.location.x for curve in list(mapping.curves)[:count] for p in curve.points]
-    return min(points + [0.0]), max(points + [1.0])
+    return min(points), max(points)
+
+
+def _curve_lookup(use, count, curves, inner=None):
+    """Return a function (position expression) -> vec4 variable, of up to four curves in a table.
+
+    `count` curves span the table; every curve is applied to what the curve `inner` gives.
+    """
+    mapping = use.node.mapping
+    mapping.initialize()
+    low, high = _curve_range(mapping, count)
+    high = max(high, low + 1e-6)
+    rows = []
+    for i in range(_TABLE_SIZE):
+        position = low + i * (high - low) / (_TABLE_SIZE - 1)
+        if inner is not None:
+            position = mapping.evaluate(inner, position)
+        samples = [mapping.evaluate(curve, position) for curve in curves]
+        rows.append((*samples, *([0.0] * (4 - len(samples)))))
+    start = use.compiler.parameter('float', low).code
+    scale = use.compiler.parameter('float', 1.0 / (high - low)).code
+    extrapolate = mapping.extend == 'EXTRAPOLATED'
+    return lambda place: _table_lookup(use, rows, f'({place} - {start}) * {scale}',
+                                       extrapolate=extrapolate)
 
 
 @value_node('CURVE_RGB', 'CURVE_VEC')
 def curves(use, output):
-    """RGB Curves and Vector Curves nodes."""
-    kind = 'color' if use.node.type == 'CURVE_RGB' else 'vector'
-    mapping = use.node.mapping
-    low, high = _curve_range(mapping, 4 if kind == 'color' else 3)
-    source = use.declare(kind, use.get('Color' if kind == 'color' else 'Vector', kind)).code
-    if kind == 'color':
-        combined = [mapping.curves[3]]
-        place = _place(use, low, high, source)
-        mixed = [_table_lookup(use, _curve_tables(mapping, combined, low, high), f'{place}.{axis}')
-                 for axis in 'xyz']
-        shaped = use.declare(kind, f'vec3({", ".join(name + ".x" for name in mixed)})').code
-    else:
-        shaped = source
-    place = _place(use, low, high, shaped)
-    rows = _curve_tables(mapping, list(mapping.curves)[:3], low, high)
-    parts = [_table_lookup(use, rows, f'{place}.{axis}') for axis in 'xyz']
-    result = f'vec3({parts[0]}.x, {parts[1]}.y, {parts[2]}.z)'
-    return use.declare(kind, f'mix({source}, {result}, {use.get("Fac", "float")})')
+    """RGB Curves and Vector Curves nodes; of colours the combined curve comes first."""
+    colors = use.node.type == 'CURVE_RGB'
+    kind = 'color' if colors else 'vector'
+    found = list(use.node.mapping.curves)
+    source = use.declare(kind, use.get('Color' if colors else 'Vector', kind)).code
+    lookup = _curve_lookup(use, 4 if colors else 3, found[:3], found[3] if colors else None)
+    parts = ', '.join(f'{lookup(f"{source}.{axis}")}.{axis}' for axis in 'xyz')
+    return use.declare(kind, f'mix({source}, vec3({parts}), {use.get("Fac", "float")})')
 
 
 @value_node('CURVE_FLOAT')
 def float_curve(use, output):
     """Float Curve node."""
-    mapping = use.node.mapping
-    low, high = _curve_range(mapping, 1)
     source = use.declare('float', use.get('Value', 'float')).code
-    rows = _curve_tables(mapping, [mapping.curves[0]], low, high)
-    place = _place(use, low, high, source, 'float')
-    found = _table_lookup(use, rows, place)
-    return use.declare('float', f'mix({source}, {found}.x, {use.get("Factor", "float")})')
-
-
-def _place(use, low, high, source, kind='vector'):
-    """Return positions 0..1 in a table that spans low..high."""
-    start = use.compiler.parameter('float', low).code
-    scale = use.compiler.parameter('float', 1.0 / (high - low)).code
-    return use.declare(kind, f'({source} - {start}) * {scale}').code
+    lookup = _curve_lookup(use, 1, [use.node.mapping.curves[0]])
+    return use.declare('float', f'mix({source}, {lookup(source)}.x, {use.get("Factor", "float")})')
 
 
 @value_node('SEPARATE_COLOR', 'SEPRGB', 'SEPHSV', 'SEPXYZ')

@@ -9,7 +9,8 @@ by zero gives 0).
 _FUNCTIONS = {}
 
 
-def _add(name, source, *needs):
+def add(name, source, *needs):
+    """Offer a function (or several that belong together) under a name; `needs` are the names it calls."""
     _FUNCTIONS[name] = (source.strip(), needs)
 
 
@@ -31,14 +32,14 @@ def source(names):
     return ''.join(parts)
 
 
-_add('node_divide', '''
+add('node_divide', '''
 float node_divide(float a, float b) { return b != 0.0 ? a / b : 0.0; }
 vec3 node_divide(vec3 a, vec3 b)
 {
     return vec3(node_divide(a.x, b.x), node_divide(a.y, b.y), node_divide(a.z, b.z));
 }
 ''')
-_add('node_power', '''
+add('node_power', '''
 float node_power(float a, float b)
 {
     if (b == 0.0)
@@ -54,7 +55,7 @@ float node_power(float a, float b)
     return mod(whole, 2.0) == 0.0 ? magnitude : -magnitude;
 }
 ''')
-_add('node_logarithm', '''
+add('node_logarithm', '''
 float node_logarithm(float a, float base)
 {
     if (a <= 0.0 || base <= 0.0)
@@ -63,20 +64,20 @@ float node_logarithm(float a, float base)
     return scale != 0.0 ? log(a) / scale : 0.0;
 }
 ''')
-_add('node_modulo', '''
+add('node_modulo', '''
 float node_modulo(float a, float b) { return b != 0.0 ? a - b * trunc(a / b) : 0.0; }
 ''')
-_add('node_floored_modulo', '''
+add('node_floored_modulo', '''
 float node_floored_modulo(float a, float b) { return b != 0.0 ? a - b * floor(a / b) : 0.0; }
 ''')
-_add('node_wrap', '''
+add('node_wrap', '''
 float node_wrap(float a, float high, float low)
 {
     float range = high - low;
     return range != 0.0 ? a - range * floor((a - low) / range) : low;
 }
 ''')
-_add('node_ping_pong', '''
+add('node_ping_pong', '''
 float node_ping_pong(float a, float scale)
 {
     if (scale == 0.0)
@@ -84,7 +85,7 @@ float node_ping_pong(float a, float scale)
     return abs(fract((a - scale) / (scale * 2.0)) * scale * 2.0 - scale);
 }
 ''')
-_add('node_smooth_minimum', '''
+add('node_smooth_minimum', '''
 float node_smooth_minimum(float a, float b, float width)
 {
     if (width == 0.0)
@@ -93,21 +94,21 @@ float node_smooth_minimum(float a, float b, float width)
     return min(a, b) - h * h * h * width * (1.0 / 6.0);
 }
 ''')
-_add('node_safe_normalize', '''
+add('node_safe_normalize', '''
 vec3 node_safe_normalize(vec3 v)
 {
     float size = length(v);
     return size != 0.0 ? v / size : vec3(0.0);
 }
 ''')
-_add('node_project', '''
+add('node_project', '''
 vec3 node_project(vec3 a, vec3 b)
 {
     float size = dot(b, b);
     return size != 0.0 ? dot(a, b) / size * b : vec3(0.0);
 }
 ''')
-_add('node_euler', '''
+add('node_euler', '''
 mat3 node_euler(vec3 angle)
 {
     vec3 c = cos(angle);
@@ -118,7 +119,7 @@ mat3 node_euler(vec3 angle)
     return z * y * x;
 }
 ''')
-_add('node_checker', '''
+add('node_checker', '''
 float node_checker(vec3 p)
 {
     // A plane that lies exactly on the cell borders must not flicker between the two colours.
@@ -127,7 +128,7 @@ float node_checker(vec3 p)
     return ((odd.x == odd.y) == (odd.z != 0)) ? 1.0 : 0.0;
 }
 ''')
-_add('node_table', '''
+add('node_table', '''
 vec4 node_table(int first, int last, float position, bool interpolate)
 {
     float place = clamp(position, 0.0, 1.0) * float(last);
@@ -138,98 +139,125 @@ vec4 node_table(int first, int last, float position, bool interpolate)
     return mix(value, param(first + min(low + 1, last)), place - float(low));
 }
 ''')
-_add('node_rgb_to_hsv', '''
-vec3 node_rgb_to_hsv(vec3 c)
+add('node_extended_table', '''
+// Goes on in a straight line beyond both ends.
+vec4 node_extended_table(int first, int last, float position, bool interpolate)
 {
-    float high = max(c.r, max(c.g, c.b));
-    float range = high - min(c.r, min(c.g, c.b));
-    if (range == 0.0 || high == 0.0)
-        return vec3(0.0, 0.0, high);
-    vec3 distance = (vec3(high) - c) / range;
-    float hue;
-    if (c.r == high)
-        hue = distance.b - distance.g;
-    else if (c.g == high)
-        hue = 2.0 + distance.r - distance.b;
-    else
-        hue = 4.0 + distance.g - distance.r;
-    return vec3(fract(hue / 6.0), range / high, high);
+    vec4 value = node_table(first, last, position, interpolate);
+    if (position < 0.0)
+        return value + (param(first + 1) - value) * (position * float(last));
+    if (position > 1.0)
+        return value + (value - param(first + last - 1)) * ((position - 1.0) * float(last));
+    return value;
+}
+''', 'node_table')
+add('node_rotate', '''
+vec3 node_rotate(vec3 v, vec3 axis, float angle)
+{
+    float size = length(axis);
+    if (size == 0.0)
+        return v;
+    axis /= size;
+    float c = cos(angle);
+    return v * c + cross(axis, v) * sin(angle) + axis * dot(axis, v) * (1.0 - c);
 }
 ''')
-_add('node_hue', '''
-vec3 node_hue(float hue)
+
+# Spaces. `point` is 1 for places and 0 for directions.
+add('node_object_to_world', '''
+vec3 node_object_to_world(Hit hit, vec3 v, float point)
 {
-    return clamp(abs(fract(vec3(hue) + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+    Transform t = fetch_transform(hit.instance, vec3(0.0));
+    return t.linear * v + t.translation * point;
 }
 ''')
-_add('node_hsv_to_rgb', '''
-vec3 node_hsv_to_rgb(vec3 hsv) { return hsv.z * mix(vec3(1.0), node_hue(hsv.x), hsv.y); }
-''', 'node_hue')
-_add('node_rgb_to_hsl', '''
-vec3 node_rgb_to_hsl(vec3 c)
+add('node_world_to_object', '''
+vec3 node_world_to_object(Hit hit, vec3 v, float point)
 {
-    float high = max(c.r, max(c.g, c.b));
-    float low = min(c.r, min(c.g, c.b));
-    float lightness = min(1.0, (high + low) * 0.5);
-    if (high == low)
-        return vec3(0.0, 0.0, lightness);
-    float range = high - low;
-    float saturation = lightness > 0.5 ? range / (2.0 - high - low) : range / (high + low);
-    return vec3(node_rgb_to_hsv(c).x, saturation, lightness);
-}
-''', 'node_rgb_to_hsv')
-_add('node_hsl_to_rgb', '''
-vec3 node_hsl_to_rgb(vec3 hsl)
-{
-    float chroma = (1.0 - abs(2.0 * hsl.z - 1.0)) * hsl.y;
-    return (node_hue(hsl.x) - 0.5) * chroma + hsl.z;
-}
-''', 'node_hue')
-_add('node_hue_saturation', '''
-vec3 node_hue_saturation(vec3 color, float hue, float saturation, float value, float factor)
-{
-    vec3 hsv = node_rgb_to_hsv(color);
-    hsv.x = fract(hsv.x + hue + 0.5);
-    hsv.y = clamp(hsv.y * saturation, 0.0, 1.0);
-    hsv.z *= value;
-    return max(mix(color, node_hsv_to_rgb(hsv), factor), vec3(0.0));
-}
-''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')
-_add('node_gamma', '''
-vec3 node_gamma(vec3 color, float gamma)
-{
-    if (gamma == 0.0)
-        return vec3(1.0);
-    return mix(color, pow(max(color, vec3(1e-30)), vec3(gamma)), greaterThan(color, vec3(0.0)));
+    Transform t = fetch_transform(hit.instance, vec3(0.0));
+    float determinant = dot(t.linear[0], cross(t.linear[1], t.linear[2]));
+    if (determinant == 0.0)
+        return vec3(0.0);
+    return transpose(cofactors(t.linear)) * (v - t.translation * point) / determinant;
 }
 ''')
-_add('node_fresnel', '''
-float node_fresnel(float cosine, float ior)
+add('node_camera_axes', '''
+// To the right, upwards and forwards.
+mat3 node_camera_axes()
 {
-    float c = abs(cosine);
-    float square = ior * ior - 1.0 + c * c;
-    if (square <= 0.0)
-        return 1.0;
-    float g = sqrt(square);
-    float a = (g - c) / (g + c);
-    float b = ((g + c) * c - 1.0) / ((g - c) * c + 1.0);
-    return 0.5 * a * a * (1.0 + b * b);
+    vec3 forwards = view.axis.xyz;
+    bool perspective = view.filtering.z > 0.5;
+    vec3 right = perspective ? view.ray_direction_dx.xyz : view.ray_origin_dx.xyz;
+    right = normalize(right - forwards * dot(right, forwards));
+    return mat3(right, cross(right, forwards), forwards);
 }
 ''')
-_add('node_object_normal', '''
-vec3 node_object_normal(Hit hit)
+add('node_to_camera', '''
+vec3 node_to_camera(vec3 v, float point)
 {
-    return normalize(transpose(fetch_transform(hit.instance, vec3(0.0)).linear) * hit.normal);
+    return transpose(node_camera_axes()) * (v - view.world_origin.xyz * point);
+}
+''', 'node_camera_axes')
+add('node_from_camera', '''
+vec3 node_from_camera(vec3 v, float point)
+{
+    return node_camera_axes() * v + view.world_origin.xyz * point;
+}
+''', 'node_camera_axes')
+add('node_window', '''
+vec3 node_window(vec3 v, float point)
+{
+    vec4 clip = view.clip_from_relative * vec4(v - view.world_origin.xyz * point, 1.0);
+    return vec3(clip.xy / clip.w * 0.5 + 0.5, 0.0);
 }
 ''')
-_add('node_equirectangular', '''
+add('node_equirectangular', '''
 vec2 node_equirectangular(vec3 direction)
 {
     float u = -atan(direction.y, direction.x) * 0.15915494 + 0.5;
     return vec2(u, atan(direction.z, length(direction.xy)) * 0.31830989 + 0.5);
 }
 ''')
-_add('node_sphere_map', '''
+add('node_mirror_ball', '''
+vec2 node_mirror_ball(vec3 direction)
+{
+    // Where a mirroring ball seen along +Y shows this direction.
+    direction = node_safe_normalize(direction);
+    vec3 halfway = direction - vec3(0.0, 1.0, 0.0);
+    float size = 2.0 * sqrt(max(-0.5 * halfway.y, 0.0));
+    if (size > 0.0)
+        halfway /= size;
+    return halfway.xz * 0.5 + 0.5;
+}
+''', 'node_safe_normalize')
+add('node_box_weights', '''
+// How much each axis' projection shows on a surface of this normal: its own where one component
+// stands out by more than the blend, a mix of two near an edge and of three near a corner.
+vec3 node_box_weights(vec3 normal, float blend)
+{
+    vec3 n = abs(normal) / (abs(normal.x) + abs(normal.y) + abs(normal.z));
+    float limit = 0.5 * (1.0 + blend);
+    vec3 pairs = n.yzx / (n.yzx + n.zxy); // y against z, z against x, x against y
+    vec3 others = 1.0 - pairs;
+    if (n.x > limit * (n.x + n.y) && n.x > limit * (n.x + n.z))
+        return vec3(1.0, 0.0, 0.0);
+    if (n.y > limit * (n.x + n.y) && n.y > limit * (n.y + n.z))
+        return vec3(0.0, 1.0, 0.0);
+    if (n.z > limit * (n.x + n.z) && n.z > limit * (n.y + n.z))
+        return vec3(0.0, 0.0, 1.0);
+    if (blend <= 0.0)
+        return vec3(1.0, 0.0, 0.0);
+    vec3 mixed = clamp((vec3(pairs.z, pairs.x, others.y) - 0.5 * (1.0 - blend)) / blend, 0.0, 1.0);
+    if (n.z < (1.0 - limit) * (n.x + n.y))
+        return vec3(mixed.x, 1.0 - mixed.x, 0.0);
+    if (n.x < (1.0 - limit) * (n.y + n.z))
+        return vec3(0.0, mixed.y, 1.0 - mixed.y);
+    if (n.y < (1.0 - limit) * (n.x + n.z))
+        return vec3(mixed.z, 0.0, 1.0 - mixed.z);
+    return ((2.0 - limit) * n + (limit - 1.0)) / (2.0 * limit - 1.0);
+}
+''')
+add('node_sphere_map', '''
 vec2 node_sphere_map(vec3 p)
 {
     float size = length(p);
@@ -239,73 +267,10 @@ vec2 node_sphere_map(vec3 p)
     return vec2(u, 1.0 - acos(clamp(p.z / size, -1.0, 1.0)) / 3.14159265);
 }
 ''')
-_add('node_tube_map', '''
+add('node_tube_map', '''
 vec2 node_tube_map(vec3 p)
 {
     float u = (p.x == 0.0 && p.y == 0.0) ? 0.0 : (1.0 - atan(p.x, p.y) / 3.14159265) * 0.5;
     return vec2(u, (p.z + 1.0) * 0.5);
 }
 ''')
-
-# Blend modes of the Mix nodes: factor first, then the two colours.
-for _name, _body in {
-    'burn': '''
-    vec3 mixed = vec3(1.0 - f) + f * b;
-    vec3 result = clamp(1.0 - (1.0 - a) / mixed, 0.0, 1.0);
-    return mix(result, vec3(0.0), lessThanEqual(mixed, vec3(0.0)));
-''',
-    'dodge': '''
-    vec3 rest = 1.0 - f * b;
-    vec3 result = min(a / rest, vec3(1.0));
-    result = mix(result, vec3(1.0), lessThanEqual(rest, vec3(0.0)));
-    return mix(result, vec3(0.0), equal(a, vec3(0.0)));
-''',
-    'overlay': '''
-    vec3 dark = a * (1.0 - f + 2.0 * f * b);
-    vec3 light = 1.0 - (1.0 - f + 2.0 * f * (1.0 - b)) * (1.0 - a);
-    return mix(light, dark, lessThan(a, vec3(0.5)));
-''',
-    'soft_light': '''
-    vec3 screen = 1.0 - (1.0 - b) * (1.0 - a);
-    return (1.0 - f) * a + f * ((1.0 - a) * b * a + a * screen);
-''',
-    'divide': '''
-    vec3 result = (1.0 - f) * a + f * a / b;
-    return mix(result, a, equal(b, vec3(0.0)));
-''',
-}.items():
-    _add(f'node_blend_{_name}', f'vec3 node_blend_{_name}(float f, vec3 a, vec3 b)\n{{{_body}}}')
-
-for _name, _change in {
-    'hue': 'hsv.x = other.x;',
-    'color': 'hsv.xy = other.xy;',
-}.items():
-    _add(f'node_blend_{_name}', f'''
-vec3 node_blend_{_name}(float f, vec3 a, vec3 b)
-{{
-    vec3 other = node_rgb_to_hsv(b);
-    if (other.y == 0.0)
-        return a;
-    vec3 hsv = node_rgb_to_hsv(a);
-    {_change}
-    return mix(a, node_hsv_to_rgb(hsv), f);
-}}
-''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')
-_add('node_blend_saturation', '''
-vec3 node_blend_saturation(float f, vec3 a, vec3 b)
-{
-    vec3 hsv = node_rgb_to_hsv(a);
-    if (hsv.y == 0.0)
-        return a;
-    hsv.y = mix(hsv.y, node_rgb_to_hsv(b).y, f);
-    return node_hsv_to_rgb(hsv);
-}
-''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')
-_add('node_blend_value', '''
-vec3 node_blend_value(float f, vec3 a, vec3 b)
-{
-    vec3 hsv = node_rgb_to_hsv(a);
-    hsv.z = mix(hsv.z, node_rgb_to_hsv(b).z, f);
-    return node_hsv_to_rgb(hsv);
-}
-''', 'node_rgb_to_hsv', 'node_hsv_to_rgb')

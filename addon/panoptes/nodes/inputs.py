@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes that read the surface: constants, coordinates, attributes, normals, view-dependent factors."""
+"""Nodes that read the surface: constants, attributes, normals, view-dependent factors."""
 
-from mathutils import Euler, Matrix
-
+from .. import compat
 from .compiler import value_node
-from .values import Value, socket_number
+from .spaces import radial_tangent
+from .values import Value, socket_kind, socket_number
 
 # Light Path outputs as the camera sees them; every hit is shaded as a camera ray's for now.
 _CAMERA_RAY = {'Is Camera Ray': 1.0, 'Is Singular Ray': 1.0}
@@ -28,48 +28,6 @@ def uv_map(use, output):
     return use.declare('vector', f'vec3({use.compiler.uv(use.node.uv_map)}, 0.0)')
 
 
-@value_node('TEX_COORD')
-def texture_coordinate(use, output):
-    """Texture Coordinate node; Camera and Window are not offered by a hit."""
-    compiler = use.compiler
-    if output == 'UV':
-        return use.declare('vector', f'vec3({compiler.uv("")}, 0.0)')
-    if output == 'Generated':
-        return use.declare('vector', compiler.generated())
-    if output == 'Object':
-        return _object_coordinate(use)
-    if output == 'Normal':
-        if compiler.domain == 'material':
-            return use.declare('vector', f'{compiler.helper("node_object_normal")}(hit)')
-        return Value('vector', compiler.shading_normal())
-    if output == 'Reflection':
-        return use.declare(
-            'vector', f'reflect(-{compiler.view_vector()}, {compiler.shading_normal()})')
-    compiler.warn(use.node, 'the world position', f'has no {output} output yet')
-    return use.declare('vector', compiler.world_position())
-
-
-def _object_coordinate(use):
-    """Coordinates in the space of the node's object, or of the shaded object itself."""
-    compiler = use.compiler
-    target = use.node.object
-    if target is None:
-        if compiler.domain == 'material':
-            return use.declare('vector', 'hit_object_position(hit)')
-        return Value('vector', 'direction')
-    # Another object's transform may change without this material being told.
-    compiler.depends_on_objects = True
-    inverse = target.matrix_world.inverted_safe()
-    return use.declare('vector', affine(compiler, inverse, compiler.world_position()))
-
-
-def affine(compiler, matrix, point):
-    """Return a vec3 expression for a 4x4 Matrix, kept in the parameter block, times a point."""
-    first = compiler.parameters.table(matrix[row][:] for row in range(3))
-    rows = ', '.join(f'dot(param({first + row}), vec4({point}, 1.0))' for row in range(3))
-    return f'vec3({rows})'
-
-
 @value_node('NEW_GEOMETRY')
 def geometry(use, output):
     """Geometry node."""
@@ -86,6 +44,11 @@ def geometry(use, output):
     if output == 'Backfacing':
         code = '(hit.backfacing ? 1.0 : 0.0)' if compiler.domain == 'material' else '0.0'
         return Value('float', code)
+    if output == 'Parametric':
+        code = 'vec3(hit.barycentrics.xy, 0.0)' if compiler.domain == 'material' else 'vec3(0.0)'
+        return Value('vector', code)
+    if output == 'Tangent' and compiler.domain == 'material':
+        return radial_tangent(use, 'Z')
     compiler.warn(use.node, 'a constant', f'has no {output} output yet')
     if output in ('Pointiness', 'Random Per Island'):
         return compiler.parameter('float', 0.5)
@@ -148,13 +111,6 @@ def normal_map(use, output):
     return use.declare('vector', f'normal_map_{space}(hit, {color}, {strength})')
 
 
-@value_node('BUMP')
-def bump(use, output):
-    """Bump node: its height is not read yet."""
-    use.compiler.warn(use.node, 'the normal that it starts from')
-    return Value('vector', use.normal())
-
-
 @value_node('FRESNEL')
 def fresnel(use, output):
     """Fresnel node: reflectance of a dielectric, from inside for back faces."""
@@ -166,9 +122,8 @@ def fresnel(use, output):
 
 
 def _fresnel(use, ior):
-    function = use.compiler.helper('node_fresnel')
     cosine = f'dot({use.compiler.view_vector()}, {use.normal()})'
-    return use.declare('float', f'{function}({cosine}, {ior})')
+    return use.declare('float', f'fresnel_dielectric({cosine}, {ior})')
 
 
 @value_node('LAYER_WEIGHT')
@@ -196,44 +151,51 @@ def light_path(use, output):
     return use.compiler.parameter('float', _CAMERA_RAY.get(output, 0.0))
 
 
-@value_node('MAPPING')
-def mapping(use, output):
-    """Mapping node; with nothing linked but the vector, one matrix from the parameter block."""
+@value_node('OBJECT_INFO')
+def object_info(use, output):
+    """Object Info node: the location; the rest are the answers for an object with nothing set."""
     compiler = use.compiler
-    vector = use.get('Vector', 'vector')
-    kind = use.node.vector_type
-    moves = kind in ('POINT', 'TEXTURE')
-    names = ('Rotation', 'Scale') + (('Location',) if moves else ())
-    constants = {name: use.constant(name) for name in names}
-    if kind != 'NORMAL' and None not in constants.values():
-        return use.declare('vector', affine(compiler, _mapping_matrix(kind, constants), vector))
-
-    vector = use.declare('vector', vector).code
-    rotation = use.declare('vector', use.get('Rotation', 'vector')).code
-    scale = use.declare('vector', use.get('Scale', 'vector')).code
-    location = use.declare('vector', use.get('Location', 'vector')).code if moves else None
-    rotate = f'{compiler.helper("node_euler")}({rotation})'
-    if kind == 'POINT':
-        return use.declare('vector', f'{rotate} * ({vector} * {scale}) + {location}')
-    if kind == 'VECTOR':
-        return use.declare('vector', f'{rotate} * ({vector} * {scale})')
-    divide = compiler.helper('node_divide')
-    if kind == 'TEXTURE':
-        back = f'transpose({rotate}) * ({vector} - {location})'
-        return use.declare('vector', f'{divide}({back}, {scale})')
-    normalize = compiler.helper('node_safe_normalize')
-    return use.declare('vector', f'{normalize}({rotate} * {divide}({vector}, {scale}))')
+    if output == 'Location' and compiler.domain == 'material':
+        return use.declare('vector', 'fetch_transform(hit.instance, vec3(0.0)).translation')
+    if output == 'Material Index':
+        return compiler.parameter('float', float(compiler.pass_index))
+    compiler.warn(use.node, 'that of a new object', f'has no {output} output yet')
+    if output == 'Color':
+        return compiler.parameter('color', (1.0, 1.0, 1.0))
+    if output == 'Location':
+        return compiler.parameter('vector', (0.0, 0.0, 0.0))
+    return compiler.parameter('float', {'Alpha': 1.0, 'Random': 0.5}.get(output, 0.0))
 
 
-def _mapping_matrix(kind, constants):
-    """Return the 4x4 Matrix of a Mapping node whose settings are all constants."""
-    rotation = Euler(constants['Rotation'], 'XYZ').to_matrix().to_4x4()
-    scale = constants['Scale']
-    if kind == 'TEXTURE':
-        inverse = Matrix.Diagonal([1.0 / s if s != 0.0 else 0.0 for s in scale] + [1.0])
-        move = Matrix.Translation([-c for c in constants['Location']])
-        return inverse @ rotation.transposed() @ move
-    matrix = rotation @ Matrix.Diagonal([*scale, 1.0])
-    if kind == 'POINT':
-        matrix = Matrix.Translation(constants['Location']) @ matrix
-    return matrix
+@value_node('HAIR_INFO', 'CURVES_INFO', 'POINT_INFO', 'PARTICLE_INFO', 'VOLUME_INFO')
+def not_of_meshes(use, output):
+    """Nodes about hair, points, particles and volumes: nothing of these is there on a mesh."""
+    compiler = use.compiler
+    if use.node.type in ('PARTICLE_INFO', 'VOLUME_INFO'):
+        compiler.warn(use.node, 'zero')
+    socket = compat.find_socket(use.node.outputs, output)
+    kind = socket_kind(socket)
+    return compiler.parameter(kind, 0.0 if kind == 'float' else (0.0, 0.0, 0.0))
+
+
+@value_node('AMBIENT_OCCLUSION')
+def ambient_occlusion(use, output):
+    """Ambient Occlusion node: nothing occludes."""
+    use.compiler.warn(use.node, 'an open surface')
+    if output == 'AO':
+        return use.compiler.parameter('float', 1.0)
+    return use.declare('color', use.get('Color', 'color'))
+
+
+@value_node('LIGHT_FALLOFF')
+def light_falloff(use, output):
+    """Light Falloff node: the strength as it is, which a lamp's own falloff then shapes."""
+    use.compiler.warn(use.node, 'the strength alone')
+    return use.declare('float', use.get('Strength', 'float'))
+
+
+@value_node('WIREFRAME')
+def wireframe(use, output):
+    """Wireframe node: no wires."""
+    use.compiler.warn(use.node, 'zero')
+    return use.compiler.parameter('float', 0.0)

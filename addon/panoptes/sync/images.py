@@ -65,6 +65,11 @@ class ImageSender:
         image_id = self._mirror.id_of('image', key)
         self._done[key] = image_id
         settings = (compat.image_is_srgb(image), _alpha_mode(image))
+        if not compat.image_colors_are_exact(image):
+            instead = 'sRGB' if settings[0] else 'linear'
+            self._warn(f"{owner}: image '{image.name}' has the colour space "
+                       f"{image.colorspace_settings.name}, which is not supported yet; it is read as "
+                       f'{instead}. Convert the image to sRGB for exact colours.')
         if image.source == 'TILED':
             self._warn(f"{owner}: image '{image.name}' has several tiles, which are not supported "
                        'yet; its first tile is used everywhere.')

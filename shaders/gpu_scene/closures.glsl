@@ -1,0 +1,280 @@
+// Closures: evaluate_material(hit, surface) adds them to a Surface.
+//
+// A Surface holds one lobe of each kind; several closures of a kind are merged, colours by sum,
+// roughness and normal by weight, which is exact for a single closure and a fair approximation for a
+// mix. The formulas are Cycles' (of 3.4 and, where they differ, of 4.0 and later).
+
+struct Surface {
+  vec3 diffuse;              // albedo
+  float diffuse_roughness;   // of Burley's lobe, 0..1; or -1 - that of Oren and Nayar's; LAMBERT
+  vec3 specular;             // reflectance at normal incidence
+  vec3 grazing;              // reflectance at grazing angles
+  float specular_ior;        // by whose Fresnel term it rises from one to the other
+  float roughness;           // of the specular lobe, 0..1 as artists set it
+  vec3 transmission;         // what passes through with refraction
+  float transmission_roughness;
+  float ior;                 // far side over near side
+  vec3 transparency;         // what passes straight through
+  vec3 emission;             // radiance
+  vec3 normal;               // unit once finished
+  vec3 smooth_normal;        // the interpolated one, as displacement leaves it
+  float coat, coat_roughness;  // a second, clear specular lobe; roughness as pack_coat() has it
+  vec3 coat_normal;
+  vec3 sheen;
+  float sheen_roughness;     // of Ashikhmin's velvet; SHEEN_SCHLICK for the lobe of Cycles 3.4
+  // Sums of weights, until finish_surface() divides by them.
+  float weight, burley_weight, oren_nayar_weight, oren_nayar_roughness;
+  float specular_weight, transmission_weight, coat_weight, sheen_weight;
+};
+
+const float LAMBERT = -1.0;
+const float SHEEN_SCHLICK = -1.0;
+
+Surface empty_surface() {
+  return Surface(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0),
+                 vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                 0.0, 0.0, 0.0);
+}
+
+// What is not finite, for whatever reason, counts as nothing.
+float finite(float x) { return abs(x) <= 1.0e30 ? x : 0.0; }
+vec3 finite(vec3 v) { return vec3(finite(v.x), finite(v.y), finite(v.z)); }
+float quotient(float sum, float weight) { return weight > 0.0 ? finite(sum / weight) : 0.0; }
+
+// Divides the merged quantities by their weights. Alpha is stochastic, so what a pixel keeps is
+// what the surface does where it is not transparent.
+void finish_surface(Hit hit, inout Surface s) {
+  s.smooth_normal = safe_normalize(s.smooth_normal, hit.normal);
+  s.normal = keep_reflection_above(hit.geometric_normal, hit.view,
+                                   safe_normalize(s.normal, s.smooth_normal));
+  s.coat_normal = keep_reflection_above(hit.geometric_normal, hit.view,
+                                        safe_normalize(s.coat_normal, hit.normal));
+  // Two diffuse models do not blend: the one that reflects more stands for both.
+  s.diffuse_roughness =
+      s.burley_weight > s.oren_nayar_weight
+          ? clamp(quotient(s.diffuse_roughness, s.burley_weight), 0.0, 1.0)
+          : LAMBERT - clamp(quotient(s.oren_nayar_roughness, s.oren_nayar_weight), 0.0, 1.0);
+  s.roughness = clamp(quotient(s.roughness, s.specular_weight), 0.0, 1.0);
+  s.specular_ior = quotient(s.specular_ior, s.specular_weight);
+  s.transmission_roughness =
+      clamp(quotient(s.transmission_roughness, s.transmission_weight), 0.0, 1.0);
+  s.ior = s.transmission_weight > 0.0 ? quotient(s.ior, s.transmission_weight) : 1.0;
+  s.coat_roughness = clamp(quotient(s.coat_roughness, s.coat_weight), -1.0, 1.0);
+  s.sheen_roughness = clamp(quotient(s.sheen_roughness, s.sheen_weight), SHEEN_SCHLICK, 1.0);
+  s.diffuse = finite(s.diffuse);
+  s.specular = finite(s.specular);
+  s.grazing = finite(s.grazing);
+  s.transmission = finite(s.transmission);
+  s.emission = finite(s.emission);
+  s.coat = finite(s.coat);
+  s.sheen = finite(s.sheen);
+#if ALPHA
+  float alpha = 1.0 - luminance(s.transparency);
+  float scale = alpha > 0.0 ? 1.0 / alpha : 0.0;
+  s.diffuse *= scale;
+  s.specular *= scale;
+  s.grazing *= scale;
+  s.transmission *= scale;
+  s.emission *= scale;
+  s.coat *= scale;
+  s.sheen *= scale;
+#endif
+}
+
+// --- lobes ------------------------------------------------------------------------------------------
+
+void add_normal(inout Surface s, vec3 weight, vec3 normal) {
+  float amount = luminance(abs(weight));
+  s.weight += amount;
+  s.normal += amount * normal;
+}
+
+void add_burley(inout Surface s, vec3 albedo, float roughness) {
+  float amount = luminance(abs(albedo));
+  s.diffuse += albedo;
+  s.burley_weight += amount;
+  s.diffuse_roughness += amount * roughness;
+}
+
+void add_oren_nayar(inout Surface s, vec3 albedo, float roughness) {
+  float amount = luminance(abs(albedo));
+  s.diffuse += albedo;
+  s.oren_nayar_weight += amount;
+  s.oren_nayar_roughness += amount * clamp(roughness, 0.0, 1.0);
+}
+
+// `ior` of 1: reflects alike at all angles.
+void add_specular(inout Surface s, vec3 normal_incidence, vec3 grazing, float ior, float roughness) {
+  // Reflections at grazing angles are seen over a twentieth of the sphere.
+  float amount = luminance(abs(normal_incidence) + 0.05 * abs(grazing));
+  s.specular += normal_incidence;
+  s.grazing += grazing;
+  s.specular_weight += amount;
+  s.roughness += amount * roughness;
+  s.specular_ior += amount * ior;
+}
+
+void add_transmission(inout Surface s, vec3 amount, float ior, float roughness) {
+  float weight = luminance(abs(amount));
+  s.transmission += amount;
+  s.transmission_weight += weight;
+  s.transmission_roughness += weight * roughness;
+  s.ior += weight * ior;
+}
+
+void add_coat(inout Surface s, float amount, float roughness, vec3 normal) {
+  s.coat += amount;
+  s.coat_weight += abs(amount);
+  s.coat_roughness += abs(amount) * roughness;
+  s.coat_normal += abs(amount) * normal;
+}
+
+void add_sheen(inout Surface s, vec3 amount, float roughness) {
+  float weight = luminance(abs(amount));
+  s.sheen += amount;
+  s.sheen_weight += weight;
+  s.sheen_roughness += weight * roughness;
+}
+
+// --- closures ---------------------------------------------------------------------------------------
+
+void closure_diffuse(inout Surface s, vec3 weight, vec3 color, float roughness, vec3 normal) {
+  add_oren_nayar(s, weight * color, roughness);
+  add_normal(s, weight, normal);
+}
+
+void closure_glossy(inout Surface s, vec3 weight, vec3 color, float roughness, vec3 normal) {
+  add_specular(s, weight * color, weight * color, 1.0, clamp(roughness, 0.0, 1.0));
+  add_normal(s, weight, normal);
+}
+
+void closure_velvet(inout Surface s, vec3 weight, vec3 color, float sigma, vec3 normal) {
+  add_sheen(s, weight * color, clamp(sigma, 0.0, 1.0));
+  add_normal(s, weight, normal);
+}
+
+float relative_ior(bool backfacing, float ior) {
+  ior = max(ior, 1.0e-5);
+  return backfacing ? 1.0 / ior : ior;
+}
+
+// Cycles decides between reflection and refraction by the macroscopic normal.
+void closure_glass(Hit hit, inout Surface s, vec3 weight, vec3 color, float roughness, float ior,
+                   vec3 normal) {
+  ior = relative_ior(hit.backfacing, ior);
+  float reflected = fresnel_dielectric(dot(normal, hit.view), ior);
+  roughness = clamp(roughness, 0.0, 1.0);
+  vec3 mirrored = weight * color * reflected;
+  add_specular(s, mirrored, mirrored, 1.0, roughness);
+  add_transmission(s, weight * color * (1.0 - reflected), ior, roughness);
+  add_normal(s, weight, normal);
+}
+
+void closure_refraction(Hit hit, inout Surface s, vec3 weight, vec3 color, float roughness, float ior,
+                        vec3 normal) {
+  add_transmission(s, weight * color, relative_ior(hit.backfacing, ior), clamp(roughness, 0.0, 1.0));
+  add_normal(s, weight, normal);
+}
+
+void closure_transparent(inout Surface s, vec3 weight, vec3 color) {
+  s.transparency += weight * color;
+}
+
+void closure_emission(inout Surface s, vec3 weight, vec3 radiance) {
+  s.emission += weight * radiance;
+}
+
+// --- Principled -------------------------------------------------------------------------------------
+
+struct Principled {
+  vec3 base_color, subsurface_color;
+  float subsurface, metallic, roughness, diffuse_roughness, specular, transmission;
+  float transmission_roughness, ior, alpha;
+  vec3 specular_tint;  // three times the same number before Blender 4.0
+  vec3 emission;
+  float sheen, sheen_roughness;
+  vec3 sheen_tint;     // as specular_tint
+  float coat, coat_roughness, coat_ior;
+  vec3 coat_tint, coat_normal, normal;
+  vec3 view;         // Hit::view
+  bool backfacing;   // Hit::backfacing
+};
+
+Principled principled_defaults(Hit hit) {
+  return Principled(vec3(0.8), vec3(0.8), 0.0, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 1.45, 1.0, vec3(0.0),
+                    vec3(0.0), 0.0, 0.5, vec3(0.5), 0.0, 0.03, 1.5, vec3(1.0), hit.normal,
+                    hit.normal, hit.view, hit.backfacing);
+}
+
+// Alpha, emission and normal, which both generations share; returns the weight of what remains.
+vec3 principled_common(inout Surface s, vec3 weight, Principled p) {
+  s.transparency += weight * (1.0 - p.alpha);
+  s.emission += weight * p.alpha * p.emission;
+  add_normal(s, weight * p.alpha, p.normal);
+  return weight * p.alpha;
+}
+
+// Blender before 4.0.
+void closure_principled_v3(inout Surface s, vec3 weight, Principled p) {
+  weight = principled_common(s, weight, p);
+  p.metallic = clamp(p.metallic, 0.0, 1.0);
+  p.roughness = clamp(p.roughness, 0.0, 1.0);
+  float transmitted = clamp(p.transmission, 0.0, 1.0) * (1.0 - p.metallic);
+  float dielectric = (1.0 - p.metallic) * (1.0 - clamp(p.transmission, 0.0, 1.0));
+
+  // Burley's diffuse lobe; light that wanders below the surface leaves where it enters.
+  add_burley(s, weight * dielectric * mix(p.base_color, p.subsurface_color, p.subsurface),
+             p.roughness);
+  float brightness = dot(p.base_color, vec3(0.3, 0.6, 0.1));  // as Disney's BRDF has it
+  vec3 hue = brightness > 0.0 ? p.base_color / brightness : vec3(1.0);
+  add_sheen(s, weight * dielectric * p.sheen * mix(vec3(1.0), hue, p.sheen_tint), SHEEN_SCHLICK);
+
+  vec3 f0 = mix(0.08 * p.specular * mix(vec3(1.0), hue, p.specular_tint), p.base_color, p.metallic);
+  float root = sqrt(max(0.08 * p.specular, 0.0));
+  if (p.specular > 0.0 || p.metallic > 0.0)
+    add_specular(s, weight * (1.0 - transmitted) * f0, weight * (1.0 - transmitted),
+                 2.0 / max(1.0 - root, 1.0e-3) - 1.0, p.roughness);
+
+  float ior = relative_ior(p.backfacing, p.ior);
+  float reflected = fresnel_dielectric(dot(p.normal, p.view), ior);
+  vec3 mirrored = weight * transmitted * reflected;
+  add_specular(s, mirrored * mix(vec3(1.0), p.base_color, p.specular_tint), mirrored, ior,
+               p.roughness);
+  add_transmission(s, weight * transmitted * (1.0 - reflected) * p.base_color, ior,
+                   1.0 - (1.0 - p.roughness) * (1.0 - clamp(p.transmission_roughness, 0.0, 1.0)));
+  // Negative: the distribution of the Disney BRDF.
+  add_coat(s, luminance(weight) * 0.25 * p.coat, -clamp(p.coat_roughness, 0.0, 1.0), p.coat_normal);
+}
+
+// Blender 4.0 and later: layers from the coat down, each with what the ones above let through.
+void closure_principled_v4(inout Surface s, vec3 weight, Principled p) {
+  weight = principled_common(s, weight, p);
+  p.metallic = clamp(p.metallic, 0.0, 1.0);
+  p.roughness = clamp(p.roughness, 0.0, 1.0);
+
+  float coat = max(p.coat, 0.0);
+  float coat_cosine = max(dot(p.coat_normal, p.view), 0.0);
+  add_coat(s, luminance(weight) * coat, clamp(p.coat_roughness, 0.0, 1.0), p.coat_normal);
+  // The way through the coat and back is longer at a slant, by the refracted direction.
+  float coat_ior = max(p.coat_ior, 1.0);
+  float within = sqrt(max(1.0 - (1.0 - coat_cosine * coat_cosine) / (coat_ior * coat_ior), 1.0e-4));
+  weight *= mix(vec3(1.0), pow(max(p.coat_tint, vec3(0.0)), vec3(1.0 / within)), min(coat, 1.0));
+  weight *= 1.0 - min(coat, 1.0) * fresnel_dielectric(coat_cosine, coat_ior);
+  add_sheen(s, weight * p.sheen * p.sheen_tint, clamp(p.sheen_roughness, 0.0, 1.0));
+
+  float metal = p.metallic, glass = (1.0 - metal) * clamp(p.transmission, 0.0, 1.0);
+  float dielectric = (1.0 - metal) * (1.0 - clamp(p.transmission, 0.0, 1.0));
+  add_specular(s, weight * metal * p.base_color, weight * metal, 1.5, p.roughness);
+
+  float ior = relative_ior(p.backfacing, p.ior);
+  float reflected = fresnel_dielectric(dot(p.normal, p.view), ior);
+  vec3 mirrored = weight * glass * reflected * p.specular_tint;
+  add_specular(s, mirrored, mirrored, 1.0, p.roughness);
+  add_transmission(s, weight * glass * (1.0 - reflected) * p.base_color, ior, p.roughness);
+
+  float f0 = min(2.0 * p.specular * reflectance_from_ior(max(p.ior, 1.0e-3)), 0.99);
+  float root = sqrt(max(f0, 0.0));
+  add_specular(s, weight * dielectric * f0 * p.specular_tint, weight * dielectric * (f0 > 0.0 ? 1.0 : 0.0),
+               (1.0 + root) / (1.0 - root), p.roughness);
+  add_oren_nayar(s, weight * dielectric * p.base_color, p.diffuse_roughness);
+}
