@@ -79,9 +79,12 @@ class PANOPTES_PT_shadows(EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
+        settings = context.scene.panoptes.realtime
         column = self._column()
-        column.prop(context.scene.panoptes.realtime, 'shadow_resolution')
-        column.prop(context.scene.panoptes.realtime, 'soft_shadows')
+        column.prop(settings, 'shadow_resolution')
+        column.prop(settings, 'soft_shadows')
+        if settings.soft_shadows:
+            column.prop(settings, 'penumbrae')
 
 
 class PANOPTES_PT_film(EnginePanel, bpy.types.Panel):

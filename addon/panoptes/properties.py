@@ -16,9 +16,20 @@ class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
         default=2048, min=64, max=8192, soft_min=256, subtype='PIXEL')
     soft_shadows: BoolProperty(
         name='Soft Shadows',
-        description='Let each sample use another point of lamps that have an extent. Without it every '
-                    'lamp is a point',
+        description='Give shadows of lamps that have an extent their penumbrae. Without it every lamp '
+                    'is a point',
         default=True)
+    penumbrae: EnumProperty(
+        name='Penumbrae',
+        description='How soft shadows are made',
+        items=(
+            ('AUTO', 'Automatic', 'Filtered in the 3D View, sampled in final renders'),
+            ('SAMPLED', 'Sampled', 'Each sample sees another point of the lamp: exact with many '
+                                   'samples, and shadow maps are drawn anew for each'),
+            ('FILTERED', 'Filtered', 'Shadows widen with the distance of what casts them: smooth and '
+                                     'fast, but an estimate'),
+        ),
+        default='AUTO')
 
 
 class PanoptesSceneSettings(bpy.types.PropertyGroup):

@@ -38,6 +38,7 @@ def _settings(scene):
     found = {
         'shadow_resolution': settings.realtime.shadow_resolution,
         'soft_shadows': settings.realtime.soft_shadows,
+        'filter_penumbrae': settings.realtime.penumbrae == 'FILTERED',
         'bounces': settings.bounces,
         'film_transparent': scene.render.film_transparent,
     }
@@ -216,6 +217,7 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
                     projection, ['Combined'], warn)
     # The picture is shown while it refines.
     request['live'] = True
+    request['settings']['filter_penumbrae'] = scene.panoptes.realtime.penumbrae != 'SAMPLED'
     # Limits are for final renders; a view goes on until it has its samples.
     for limit in ('time_budget', 'noise_threshold'):
         request['settings'].pop(limit, None)

@@ -3,12 +3,14 @@
 
 import json
 import math
+import types
 
 import bpy
 import numpy as np
 import pytest
+from mathutils import Matrix
 
-from panoptes import compat, native, passes, session
+from panoptes import compat, native, passes, requests, session
 
 
 def lamp(kind='SUN', energy=1.0, location=(0, 0, 5)):
@@ -277,3 +279,22 @@ class TestForReal:
         scene.camera = None
         with pytest.raises(RuntimeError):
             bpy.ops.render.render()
+
+
+def test_penumbrae_are_sampled_in_final_renders_and_filtered_in_views(scene):
+    scene.camera = bpy.data.objects.new('camera', bpy.data.cameras.new('camera'))
+    scene.collection.objects.link(scene.camera)
+    region = types.SimpleNamespace(width=64, height=32)
+    looking = types.SimpleNamespace(view_perspective='PERSP', view_matrix=Matrix(), window_matrix=Matrix())
+    space = types.SimpleNamespace(use_render_border=False)
+
+    def filtered(mode):
+        scene.panoptes.realtime.penumbrae = mode
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        final = requests.final(depsgraph, ['Combined'], pytest.fail)
+        view, _ = requests.viewport(depsgraph, region, looking, space, 1, pytest.fail)
+        return [request['settings']['filter_penumbrae'] for request in (final, view)]
+
+    assert filtered('AUTO') == [False, True]
+    assert filtered('SAMPLED') == [False, False]
+    assert filtered('FILTERED') == [True, True]

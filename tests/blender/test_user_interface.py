@@ -151,7 +151,9 @@ class TestOurPanels:
         assert 'exposure' in draw('PANOPTES_PT_film')
         assert 'samples' in draw('PANOPTES_PT_sampling')
         assert 'seed' in draw('PANOPTES_PT_sampling_limits')
-        assert 'soft_shadows' in draw('PANOPTES_PT_shadows')
+        assert 'penumbrae' in draw('PANOPTES_PT_shadows')
+        scene.panoptes.realtime.soft_shadows = False
+        assert draw('PANOPTES_PT_shadows') == ['shadow_resolution', 'soft_shadows']
         assert 'use_pass_z' in draw('PANOPTES_PT_passes')
         assert draw('PANOPTES_PT_take_over') == ['panoptes.take_over_cycles']
 
