@@ -82,7 +82,9 @@ def extract(thing, slots, wanted, warn, final=False):
     called when the object had to be repaired. `final` says that Blender evaluated for a final
     render, so that it kept where vertices were before modifiers.
     """
-    moved = final and (len(thing.modifiers) or thing.original.data.shape_keys is not None)
+    # Metaballs cannot have shape keys.
+    shapes = getattr(thing.original.data, 'shape_keys', None)
+    moved = final and (len(thing.modifiers) or shapes is not None)
     own = {UNDEFORMED} if moved else set()
     # Evaluated data can be read as it is, but in edit mode it is a wrapper without arrays.
     mesh = thing.data
