@@ -40,8 +40,18 @@ GpuScene::GpuScene(const gl::DeviceInfo& device)
 void GpuScene::update(scene::Scene& scene) {
   const scene::Changes changes = scene.take_changes();
   if (!changes.any()) return;
-  ++revision_;
   const bool structure = changes.instances || !changes.materials.empty();
+  const bool shapes = structure || !changes.meshes.empty() || !changes.instance_matrices.empty() ||
+                      !changes.images.empty();
+  const auto values_of_any = [&](bool scene::MaterialFacts::*fact) {
+    return std::any_of(changes.material_params.begin(), changes.material_params.end(),
+                       [&](scene::Id id) {
+                         const auto found = scene.materials().find(id);
+                         return found != scene.materials().end() && found->second.facts.*fact;
+                       });
+  };
+  if (shapes || changes.lights || values_of_any(&scene::MaterialFacts::alpha)) ++shadow_revision_;
+  if (shapes || values_of_any(&scene::MaterialFacts::emission)) ++emission_revision_;
   const bool resized = std::any_of(changes.meshes.begin(), changes.meshes.end(),
                                    [](const auto& item) { return item.second.resized(); });
   meshes_.update(scene, changes);

@@ -58,8 +58,10 @@ class GpuScene {
   int world_image_width() const { return world_image_width_; }
   const gl::Buffer& records() const { return draws_.records(); }
   bool empty() const { return draws_.empty(); }
-  // Grows with every change, so that what was derived from the scene can be kept until then.
-  int64_t revision() const { return revision_; }
+  // These grow with every change of what can be derived from the scene, to keep it until then: shadow
+  // maps (geometry, lamps, materials with an alpha) and the light of glowing surfaces.
+  int64_t shadow_revision() const { return shadow_revision_; }
+  int64_t emission_revision() const { return emission_revision_; }
   // The same for the world alone.
   int64_t world_revision() const { return world_revision_; }
 
@@ -106,7 +108,7 @@ class GpuScene {
   void begin_draw() const;
 
   gl::DeviceInfo device_;
-  int64_t revision_ = 0, world_revision_ = 0;
+  int64_t shadow_revision_ = 0, emission_revision_ = 0, world_revision_ = 0;
   MeshStore meshes_;
   InstanceList instances_;
   DrawLists draws_;

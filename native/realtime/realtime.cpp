@@ -93,6 +93,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
                      const Settings& settings, bool single, const scene::Scene& scene,
                      const gpu_scene::GpuScene& gpu) {
   camera_ = camera;
+  if (settings.seed != settings_.seed) shadow_revision_ = -1;  // emitters have other points
   settings_ = settings;
   plan_ = plan;
   surfaces_ = rasterize::GBufferOptions::of(plan);
@@ -123,9 +124,11 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
     emitter_revision_ = -1;
   } else {
     gl::PassScope scope(timer_, "emissive_light");
-    if (emitter_revision_ != gpu.revision())
+    if (emitter_revision_ != gpu.emission_revision()) {
       emitters_.update(scene, {gpu, programs_, view_block_, gpu_scene::camera_view(camera, {0, 0})});
-    emitter_revision_ = gpu.revision();
+      emitter_revision_ = gpu.emission_revision();
+      shadow_revision_ = -1;  // their points may stand elsewhere
+    }
     emitters_.start(
         [seed = settings.seed](uint32_t index) {
           return film::sample_point(index, seed, kEmitterDimension);
@@ -292,8 +295,8 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
   // or another batch has overwritten them.
   const bool lasting =
       !soft_ && !alpha_ && set.batches.size() <= 1 && (emitters_.empty() || single_);
-  const bool keep = lasting && shadow_revision_ == gpu.revision();
-  shadow_revision_ = lasting ? gpu.revision() : -1;
+  const bool keep = lasting && shadow_revision_ == gpu.shadow_revision();
+  shadow_revision_ = lasting ? gpu.shadow_revision() : -1;
   for (const rasterize::LightBatch& batch : set.batches) {
     if (shadows_) {
       shadow_maps_.render(set, batch, settings_.shadows, view, gpu, programs_, timer_, view_block_,

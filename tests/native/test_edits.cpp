@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 
 namespace panoptes::test {
 namespace {
@@ -307,6 +308,30 @@ TEST_F(Edits, SettingsOfTheFrameDoNotStick) {
   render(other);
   after = render(r);
   for (Pass pass : {Pass::kCombined, Pass::kDepth, Pass::kDiffDir}) EXPECT_TRUE(same(pass));
+}
+
+TEST(ValueEdits, OfPlainMaterialsKeepShadowsAndGlow) {
+  TestScene s;
+  const Id plain = s.add_material(lambert()), glow = s.add_material(emitter(glm::vec3(1)));
+  s.add_object(floor_at(0, 3), {plain});
+  s.add_object(quad({1, 0, 2}, {0.5f, 0, 0}, {0, 0.5f, 0}), {glow});
+  s.lights = {sun({0.2f, 0.1f, -1}, 1)};
+  const engine::RenderRequest r = request(orthographic({0, 0, 9}, {0, 0, 0}, 1.0, 12, 12), {});
+  const auto drawn = [](const Picture& picture) {
+    std::set<std::string> names;
+    for (const auto& [name, ms] : picture.stats.passes) names.insert(name);
+    return std::pair(names.count("sun_shadows"), names.count("emissive_shadows"));
+  };
+  const auto change = [&](Id id, float value) {
+    shared_engine().edit([&](scene::Scene& scene) {
+      scene.set_material_params(id, {glm::vec4(value, value, value, 1)});
+    });
+    return drawn(render(r));
+  };
+  EXPECT_EQ(drawn(render(s, r)), std::pair(size_t(1), size_t(1)));
+  EXPECT_EQ(change(plain, 0.25f), std::pair(size_t(0), size_t(0)));
+  // A lamp's maps are drawn together with those of what glows.
+  EXPECT_EQ(change(glow, 2.0f).second, size_t(1));
 }
 
 }  // namespace
