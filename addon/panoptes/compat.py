@@ -120,7 +120,8 @@ def image_is_srgb(image):
 
 def image_colors_are_exact(image):
     """Tell whether an image's colour space is one that is read as it is meant: sRGB or Rec.709 linear."""
-    names = ('sRGB', 'Linear', 'Linear Rec.709', 'Linear BT.709 I-D65', 'scene_linear', 'Raw', 'Utility - Raw')
+    # Blender gives no name at all to what it could not read.
+    names = ('sRGB', 'Linear', 'Linear Rec.709', 'Linear BT.709 I-D65', 'scene_linear', 'Raw', 'Utility - Raw', '')
     return image_is_data(image) or image.colorspace_settings.name in names
 
 

@@ -77,12 +77,14 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   // Take over what changed. The plan is made from the same state of the scene.
   job.set_status("uploading the scene", 0);
   const uint32_t wanted = request.last_sample - request.first_sample;
+  // Samples that come after others are part of a picture of many, even if only one is asked for.
+  const bool single = request.last_sample == 1;
   plan::Effects plan;
   std::vector<std::string> warnings;
   {
     std::lock_guard lock(mutex);
     gpu_scene_.update(scene);
-    plan = plan::make_plan(scene.facts(), {int(wanted), request.soft_shadows,
+    plan = plan::make_plan(scene.facts(), {int(request.last_sample), request.soft_shadows,
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes});
     film::PassSet passes = request.passes;
@@ -102,8 +104,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
         [&](const gpu_scene::GpuShading& world) {
           programs_.get(realtime::background_program(world));
         });
-    realtime_.begin(request.camera, plan, settings,
-                    wanted == 1 && request.first_sample == 0, scene, gpu_scene_);
+    realtime_.begin(request.camera, plan, settings, single, scene, gpu_scene_);
     warnings = scene.warnings();
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);

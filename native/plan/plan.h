@@ -8,7 +8,7 @@
 namespace panoptes::plan {
 
 struct PlanSettings {
-  int samples = 1;
+  int samples = 1;                 // of the picture, up to the last one asked for
   bool soft_shadows = true;
   bool filter_penumbrae = false;   // by blocker distance, instead of a point of each lamp a sample
   bool force_all_effects = false;  // runs what the scene cannot show too; the picture stays the same

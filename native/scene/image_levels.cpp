@@ -19,18 +19,23 @@ double code_of_light(double light) {
   return light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
 
-// sRGB codes to light in 16 bits and back, by tables; 16 bits of light tell all 8-bit codes apart.
+// sRGB codes to light in 16 bits and back, by tables. The way back has as many bits as tell all codes
+// apart: 13 for 8-bit codes, whose table then stays in the processor's first cache.
 template <class Code>
 struct LightTables {
   static constexpr double kMax = double(std::numeric_limits<Code>::max());
+  static constexpr int kDropped = sizeof(Code) == 1 ? 3 : 0;  // bits of the 16
   std::vector<uint16_t> light;
   std::vector<Code> code;
 
-  LightTables() : light(size_t(kMax) + 1), code(65536) {
+  LightTables() : light(size_t(kMax) + 1), code(65536 >> kDropped) {
     for (size_t i = 0; i < light.size(); ++i)
       light[i] = uint16_t(std::lround(light_of_code(double(i) / kMax) * 65535));
+    // Each entry stands for the middle of the light that leads to it.
+    const double middle = 0.5 * ((1 << kDropped) - 1);
     for (size_t i = 0; i < code.size(); ++i)
-      code[i] = Code(std::lround(code_of_light(double(i) / 65535) * kMax));
+      code[i] = Code(std::lround(
+          code_of_light((double(i << kDropped) + middle) / 65535) * kMax));
   }
   static const LightTables& get() {
     static const LightTables tables;
@@ -52,10 +57,13 @@ template <class Code>
 struct AsLight {
   const LightTables<Code>& tables = LightTables<Code>::get();
   float in(Code code) const { return float(tables.light[code]); }
-  Code out(float mean) const { return tables.code[size_t(mean + 0.5f)]; }
+  Code out(float mean) const {
+    return tables.code[size_t(mean + 0.5f) >> LightTables<Code>::kDropped];
+  }
   Code of_four(Code a, Code b, Code c, Code d) const {
     const uint16_t* light = tables.light.data();
-    return tables.code[(uint32_t(light[a]) + light[b] + light[c] + light[d] + 2) / 4];
+    const uint32_t sum = uint32_t(light[a]) + light[b] + light[c] + light[d] + 2;
+    return tables.code[sum >> (2 + LightTables<Code>::kDropped)];
   }
 };
 struct AsFloats {
@@ -162,8 +170,13 @@ template <class T>
 bool opaque(const Image& image) {
   if (image.channels % 2 != 0) return true;
   const std::span<const T> values = image.pixels<T>();
-  for (size_t i = size_t(image.channels) - 1; i < values.size(); i += size_t(image.channels))
-    if (values[i] != std::numeric_limits<T>::max()) return false;
+  const size_t channels = size_t(image.channels), row = size_t(image.width) * channels;
+  for (size_t first = 0; first < values.size(); first += row) {
+    // All bits of all alphas at once: without an exit in the middle the compiler makes vectors of it.
+    T common = std::numeric_limits<T>::max();
+    for (size_t i = first + channels - 1; i < first + row; i += channels) common &= values[i];
+    if (common != std::numeric_limits<T>::max()) return false;
+  }
   return true;
 }
 
