@@ -276,5 +276,9 @@ void closure_principled_v4(inout Surface s, vec3 weight, Principled p) {
   float root = sqrt(max(f0, 0.0));
   add_specular(s, weight * dielectric * f0 * p.specular_tint, weight * dielectric * (f0 > 0.0 ? 1.0 : 0.0),
                (1.0 + root) / (1.0 - root), p.roughness);
-  add_oren_nayar(s, weight * dielectric * p.base_color, p.diffuse_roughness);
+  // The base gets what the reflection on it leaves.
+  vec3 reflected_above = environment_reflectance(f0 * p.specular_tint, vec3(f0 > 0.0 ? 1.0 : 0.0),
+                                                 p.roughness, max(dot(p.normal, p.view), 0.0));
+  float below = 1.0 - max(max(reflected_above.r, reflected_above.g), reflected_above.b);
+  add_oren_nayar(s, weight * dielectric * max(below, 0.0) * p.base_color, p.diffuse_roughness);
 }

@@ -1,5 +1,6 @@
 // What generated material code calls: parameters, images, normal maps and closures.
 #include "base/color.glsl"
+#include "base/albedo.glsl"
 #include "base/fresnel.glsl"
 #include "gpu_scene/geometry.glsl"
 
