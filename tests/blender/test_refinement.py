@@ -189,11 +189,14 @@ class TestState:
         mesh.materials.append(material)
         add_object(mesh)
         world = scene.world = bpy.data.worlds.new('World')
-        material.use_nodes = world.use_nodes = False
+        material.use_nodes = world.use_nodes = True
+        color = {node.type: next(i for i in node.inputs if i.type == 'RGBA')
+                 for tree in (material.node_tree, world.node_tree) for node in tree.nodes
+                 if node.type in ('BSDF_PRINCIPLED', 'BACKGROUND')}
         states = set()
         for change in (lambda: None, lambda: setattr(light, 'energy', 5.0),
-                       lambda: setattr(material, 'diffuse_color', (1, 0, 0, 1)),
-                       lambda: setattr(world, 'color', (0, 1, 0))):
+                       lambda: setattr(color['BSDF_PRINCIPLED'], 'default_value', (1, 0, 0, 1)),
+                       lambda: setattr(color['BACKGROUND'], 'default_value', (0, 1, 0, 1))):
             change()
             bpy.context.view_layer.update()
             sync.full()
