@@ -357,6 +357,17 @@ std::string Worst::where() const {
                      error_);
 }
 
+void expect_on_floor(const Picture& picture, const gpu_scene::Camera& camera,
+                     const std::function<double(glm::dvec3)>& expected, double tolerance) {
+  Worst worst;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const glm::dvec3 p = on_plane(pixel_ray(camera, x, y), {0, 0, 0}, {0, 0, 1});
+      worst.compare(picture.value(film::Pass::kDiffDir, x, y), expected(p), 1e-6, x, y);
+    }
+  EXPECT_WORST_BELOW(worst, tolerance);
+}
+
 double relative_rmse(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0;
   for (size_t i = 0; i < a.size(); ++i) sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);

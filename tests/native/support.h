@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -146,6 +147,11 @@ class Worst {
   double error_ = 0, actual_ = 0, expected_ = 0;
   int x_ = 0, y_ = 0, count_ = 0;
 };
+
+// Expects Diffuse Direct of a picture of the floor z = 0 to be `expected` at the points of the floor
+// that the pixels' centres show, within a relative `tolerance`.
+void expect_on_floor(const Picture& picture, const gpu_scene::Camera& camera,
+                     const std::function<double(glm::dvec3)>& expected, double tolerance);
 
 // Root mean square of a - b divided by the mean of b, over all values.
 double relative_rmse(const std::vector<float>& a, const std::vector<float>& b);

@@ -36,14 +36,7 @@ double from_plate(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec
 
 void expect_on_floor(const TestScene& scene, uint32_t samples,
                      const std::function<double(glm::dvec3)>& expected, double tolerance) {
-  const Picture picture = render(scene, many(samples));
-  Worst worst;
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
-      const glm::dvec3 p = on_plane(pixel_ray(kAbove, x, y), {0, 0, 0}, {0, 0, 1});
-      worst.compare(picture.value(Pass::kDiffDir, x, y), expected(p), 1e-6, x, y);
-    }
-  EXPECT_WORST_BELOW(worst, tolerance);
+  test::expect_on_floor(render(scene, many(samples)), kAbove, expected, tolerance);
 }
 
 // Out of the camera's sight: to the side of the part of the floor that it looks at.

@@ -34,14 +34,7 @@ engine::RenderRequest many(uint32_t samples = kSamples) {
 
 void expect_on_floor(const scene::Light& lamp, const std::function<double(glm::dvec3)>& expected,
                      double tolerance = kMonteCarlo) {
-  const Picture picture = render(lit_floor(lamp), many());
-  Worst worst;
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
-      const glm::dvec3 p = on_plane(pixel_ray(kAbove, x, y), {0, 0, 0}, {0, 0, 1});
-      worst.compare(picture.value(Pass::kDiffDir, x, y), expected(p), 1e-6, x, y);
-    }
-  EXPECT_WORST_BELOW(worst, tolerance);
+  test::expect_on_floor(render(lit_floor(lamp), many()), kAbove, expected, tolerance);
 }
 
 // Irradiance / pi from a plane lamp of radiance P / (4 A) by 64 x 64 points of its shape.
