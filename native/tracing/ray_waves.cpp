@@ -1,0 +1,79 @@
+#include "tracing/ray_waves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace panoptes::tracing {
+
+namespace {
+
+// Rays that may wait at first; most batches have none.
+constexpr uint32_t kFirstCapacity = 1024;
+
+// Work groups of 64 along x, then y: either dimension has at least 65 535.
+void dispatch(uint32_t invocations) {
+  const uint32_t groups = (invocations + 63) / 64, across = std::min(groups, 65535u);
+  glDispatchCompute(across, across ? (groups + across - 1) / across : 0, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace
+
+gl::ProgramSource trace_program(const Tracer& tracer, const TraceOptions& options, bool resumed) {
+  gl::ProgramSource source;
+  source.name = "trace";
+  source.stages = {{GL_COMPUTE_SHADER, "tracing/trace.comp"}};
+  source.defines = {fmt::format("ANY_HIT {}", int(options.any_hit)),
+                    fmt::format("COUNT_WORK {}", int(options.count_work)),
+                    fmt::format("RESUMED {}", int(resumed))};
+  tracer.add_to(source);
+  return source;
+}
+
+void RayWaves::trace(const Tracer& tracer, const TriangleList& triangles, const RayBatch& batch,
+                     const TraceOptions& options, gl::ProgramCache& programs, int budget) {
+  dispatches_ = 0;
+  if (batch.count == 0) return;
+  if (!counter_) counter_ = gl::Buffer(16);
+  const int64_t record = 4 * (5 + int64_t(tracer.traversal_words()));
+  const gl::Texture rays(GL_RGBA32F, *batch.rays);
+  const auto reserve = [&](gl::Buffer& pending, uint32_t rays_waiting) {
+    if (pending.bytes() < rays_waiting * record) pending = gl::Buffer(rays_waiting * record);
+  };
+  const auto run = [&](bool resumed, uint32_t count, const gl::Buffer* from, gl::Buffer& to) {
+    programs.get(trace_program(tracer, options, resumed)).use();
+    triangles.texture().bind(kTriangleUnit);
+    tracer.bind();
+    rays.bind(kRayUnit);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, batch.hits->id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, to.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, counter_.id());
+    if (from) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, from->id());
+    if (options.count_work) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, batch.work->id());
+    counter_.clear();
+    glUniform1ui(0, count);
+    glUniform1ui(1, uint32_t(to.bytes() / record));
+    glUniform1i(2, budget);
+    dispatch(count);
+    ++dispatches_;
+    uint32_t waiting = 0;
+    counter_.read(0, 4, &waiting);
+    return waiting;
+  };
+
+  reserve(pending_[0], kFirstCapacity);
+  uint32_t waiting = run(false, batch.count, nullptr, pending_[0]);
+  if (waiting > uint64_t(pending_[0].bytes() / record)) {
+    // Some have been counted but not saved: with room for all of them, the same rays wait again.
+    reserve(pending_[0], waiting);
+    waiting = run(false, batch.count, nullptr, pending_[0]);
+  }
+  for (int turn = 0; waiting > 0; turn ^= 1) {
+    reserve(pending_[turn ^ 1], waiting);  // no more can wait then than wait now
+    waiting = run(true, waiting, &pending_[turn], pending_[turn ^ 1]);
+  }
+}
+
+}  // namespace panoptes::tracing

@@ -1,0 +1,55 @@
+// All triangles that rays may meet, transformed to one space: what every tracer is built over.
+//
+// Positions are relative to origin(), the middle of the scene, so that a scene far from the world's
+// origin loses no precision that its own coordinates have.
+#pragma once
+
+#include "gl/context.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+#include "gpu_scene/gpu_scene.h"
+#include "scene/scene.h"
+#include "tracing/rays_shared.h"
+
+#include <span>
+#include <vector>
+
+namespace panoptes::tracing {
+
+class TriangleList {
+ public:
+  explicit TriangleList(const gl::DeviceInfo& device) : device_(device) {}
+
+  // Writes the list again if geometry, places or materials have changed since the last call; true if
+  // so. Throws Error when the driver cannot address so many triangles.
+  bool update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu, gl::ProgramCache& programs,
+              gl::PassTimer& timer);
+  // Takes triangles from the host, about `origin`.
+  void assign(std::span<const shared::TracedTriangle> triangles,
+              const glm::vec3& origin = glm::vec3(0));
+
+  uint32_t count() const { return count_; }
+  // Where positions are relative to, world space.
+  const glm::vec3& origin() const { return origin_; }
+  // Holds all triangles that somebody sees; relative to the origin. Empty if there are none.
+  const scene::Bounds& bounds() const { return bounds_; }
+  const gl::Buffer& buffer() const { return buffer_; }
+  // RGBA32F, three texels a triangle.
+  const gl::Texture& texture() const { return texture_; }
+  // The list as the GPU has it, for tracers that are built on the host.
+  std::vector<shared::TracedTriangle> read() const;
+
+ private:
+  void reserve(uint32_t count);
+
+  gl::DeviceInfo device_;
+  uint32_t count_ = 0;
+  glm::vec3 origin_{0};
+  scene::Bounds bounds_;
+  int64_t revision_ = -1;
+  gl::Buffer buffer_;
+  gl::Texture texture_;
+  gl::Buffer spans_;
+};
+
+}  // namespace panoptes::tracing

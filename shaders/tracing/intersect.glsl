@@ -1,0 +1,75 @@
+// Rays, and the watertight test of a ray with a triangle (Woop, Benthin and Wald 2013).
+//
+// The ray is sheared onto the axis of its largest component; there each edge function is the
+// difference of two products of coordinates that neighbours share bit by bit. Rounding is monotonic,
+// so the difference has the right sign or is zero, and zero counts as inside: no ray slips between
+// triangles that share vertices. That needs each product rounded by itself: `precise`.
+#include "tracing/rays_shared.h"
+
+layout(binding = 0) uniform samplerBuffer triangles;  // as TracedTriangle
+
+struct Ray {
+  vec3 origin;
+  float t_min;
+  vec3 direction;
+  float t_max;
+  uint after, seen_by, seed;
+  // Derived: the axis of the largest component of the direction, and the shear along it.
+  int axis;
+  vec3 shear;
+};
+
+#if COUNT_WORK
+TracedWork work = TracedWork(0u, 0u);
+#define COUNT_STEP ++work.steps;
+#define COUNT_TEST ++work.tests;
+#else
+#define COUNT_STEP
+#define COUNT_TEST
+#endif
+
+vec3 axis_last(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v.xyz; }
+
+Ray make_ray(vec3 origin, float t_min, vec3 direction, float t_max, uint after, uint seen_by,
+             uint seed) {
+  Ray ray;
+  ray.origin = origin;
+  ray.t_min = t_min;
+  ray.direction = direction;
+  ray.t_max = t_max;
+  ray.after = after;
+  ray.seen_by = seen_by;
+  ray.seed = seed;
+  vec3 size = abs(direction);
+  ray.axis = size.z >= size.x && size.z >= size.y ? 2 : size.y >= size.x ? 1 : 0;
+  vec3 d = axis_last(direction, ray.axis);
+  ray.shear = vec3(d.xy, 1.0) / d.z;
+  return ray;
+}
+
+// Tests primitive `primitive` and keeps it in `hit` if it is closer; of several at the same t the
+// one with the lowest number, so that the result does not depend on the order of tests.
+void intersect(Ray ray, uint primitive, inout TracedHit hit) {
+  COUNT_TEST
+  int i = int(primitive) * 3;
+  vec4 texel0 = texelFetch(triangles, i), texel1 = texelFetch(triangles, i + 1),
+       texel2 = texelFetch(triangles, i + 2);
+  vec3 a = axis_last(texel0.xyz - ray.origin, ray.axis);
+  vec3 b = axis_last(texel1.xyz - ray.origin, ray.axis);
+  vec3 c = axis_last(texel2.xyz - ray.origin, ray.axis);
+  precise vec2 a2 = a.xy - ray.shear.xy * a.z;
+  precise vec2 b2 = b.xy - ray.shear.xy * b.z;
+  precise vec2 c2 = c.xy - ray.shear.xy * c.z;
+  precise float u = c2.x * b2.y - c2.y * b2.x;
+  precise float v = a2.x * c2.y - a2.y * c2.x;
+  precise float w = b2.x * a2.y - b2.y * a2.x;
+  float determinant = u + v + w;
+  float inverse = 1.0 / determinant;
+  float t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
+  bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
+  bool ahead = t > ray.t_min || (t == ray.t_min && primitive > ray.after);
+  bool closer = t < hit.t || (t == hit.t && primitive < hit.primitive);
+  bool seen = (floatBitsToUint(texel2.w) & ray.seen_by) != 0u;
+  if (inside && determinant != 0.0 && ahead && closer && seen)
+    hit = TracedHit(t, primitive, v * inverse, w * inverse);
+}
