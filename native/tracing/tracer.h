@@ -14,8 +14,9 @@
 // keeps the closest (with ANY_HIT 1: whatever is met ends the search). It returns true when it is
 // through, and false after about `budget` iterations of all its loops together: the ray is then
 // saved and goes on in another dispatch, since llvmpipe cuts an invocation off after 65 535
-// iterations and no dispatch may hold up a GPU. With COUNT_WORK 1 it adds to work.steps and
-// work.tests.
+// iterations and no dispatch may hold up a GPU. It
+// says COUNT_STEP for each node or cell and COUNT_LIST(cell, length) for each list, which count with
+// COUNT_WORK 1 only.
 #pragma once
 
 #include "gl/pass_timer.h"

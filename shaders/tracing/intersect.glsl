@@ -4,9 +4,7 @@
 // difference of two products of coordinates that neighbours share bit by bit. Rounding is monotonic,
 // so the difference has the right sign or is zero, and zero counts as inside: no ray slips between
 // triangles that share vertices. That needs each product rounded by itself: `precise`.
-#include "tracing/rays_shared.h"
-
-layout(binding = 0) uniform samplerBuffer triangles;  // as TracedTriangle
+#include "tracing/triangles.glsl"
 
 struct Ray {
   vec3 origin;
@@ -20,15 +18,18 @@ struct Ray {
 };
 
 #if COUNT_WORK
-TracedWork work = TracedWork(0u, 0u);
+TracedWork work = TracedWork(0u, 0u, 0u, 0u);
 #define COUNT_STEP ++work.steps;
 #define COUNT_TEST ++work.tests;
+// A list of `length` triangles in `cell` is about to be tested.
+#define COUNT_LIST(cell_, length_) \
+  work.longest = max(work.longest, length_); \
+  work.cell = cell_;
 #else
 #define COUNT_STEP
 #define COUNT_TEST
+#define COUNT_LIST(cell_, length_)
 #endif
-
-vec3 axis_last(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v.xyz; }
 
 Ray make_ray(vec3 origin, float t_min, vec3 direction, float t_max, uint after, uint seen_by,
              uint seed) {

@@ -49,9 +49,11 @@ SHARED_ASSERT_SIZE(TracedHit, 16)
 
 // What one ray cost.
 struct TracedWork {
-  uint steps;  // nodes or cells visited
-  uint tests;  // triangles tested
+  uint steps;    // nodes or cells visited
+  uint tests;    // triangles tested
+  uint longest;  // triangles in the longest list that was tested
+  uint cell;     // where the last list lay, as the tracer numbers its cells or leaves
 };
-SHARED_ASSERT_SIZE(TracedWork, 8)
+SHARED_ASSERT_SIZE(TracedWork, 16)
 
 SHARED_END

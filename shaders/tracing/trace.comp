@@ -54,6 +54,8 @@ void main() {
 #if RESUMED
   work.steps += all_work[index].steps;
   work.tests += all_work[index].tests;
+  if (work.longest == 0u) work.cell = all_work[index].cell;
+  work.longest = max(work.longest, all_work[index].longest);
 #endif
   all_work[index] = work;
 #endif
