@@ -1,0 +1,21 @@
+// The pools that rasterisation fills: entries of cells, and blocks of large triangles.
+#include "primitive_tracer/build_shared.h"
+
+layout(std430, binding = 0) buffer Entries { CellEntry entries[]; };
+layout(std430, binding = 1) buffer Blocks { RasterBlock blocks[]; };
+layout(std430, binding = 2) buffer Counters { BuildCounters counters; };
+layout(location = 0) uniform uint triangle_count;
+layout(location = 1) uniform uvec2 pool_sizes;  // of entries, of blocks
+
+// The number of this invocation where work groups of 64 spread over x and y.
+uint invocation() { return gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u; }
+
+void add_entry(uint cell, uint primitive, uint low, uint high) {
+  uint place = atomicAdd(counters.entries, 1u);
+  if (place < pool_sizes.x) entries[place] = CellEntry(cell, primitive, low, high);
+}
+
+void add_block(uint primitive, uint view, uvec2 block) {
+  uint place = atomicAdd(counters.blocks, 1u);
+  if (place < pool_sizes.y) blocks[place] = RasterBlock(primitive, view, block.x, block.y);
+}

@@ -1,0 +1,43 @@
+// The single view along the shortest axis of the scene's box, divided into square tiles, and the
+// nodes of its pyramid.
+#pragma once
+
+#include "base/cpp_glsl.h"
+
+SHARED_BEGIN
+
+struct OrthographicView {
+  vec4 low;    // xyz: corner of the box; w: tiles a metre
+  vec4 depth;  // x: 1 / depth of the box, 1/metre
+  ivec4 grid;  // x: axis; y: tiles a side, a power of two; z: its logarithm; w: first divided node
+};
+SHARED_ASSERT_SIZE(OrthographicView, 48)
+
+// Depths are whole numbers of 2^-DEPTH_BITS of the box; nodes keep a mask with a bit for each 64th.
+const uint DEPTH_BITS = 22u;
+const uint MASK_SHIFT = 16u;
+
+// How far rounding may put a depth off, in units of the box's depth.
+const float DEPTH_MARGIN = 2e-6;
+
+// A node of the pyramid, of a tile, or of a part of a tile is a uvec4: its mask in x and y. Those
+// that triangles are listed in have
+//     z   where the offsets of its buckets begin
+//     w   bits 4..8: shift from depths to buckets; bits 9..17: buckets - 1; above: first bucket
+// and a tile that is divided into 2^k x 2^k parts has z: its first part and w: k.
+const uint NODE_LEVELS = 15u;
+const uint NODE_SHIFT = 4u;
+const uint NODE_BUCKETS = 9u;
+const uint NODE_FIRST = 18u;
+const uint MOST_BUCKETS = 256u;
+const uint LEAST_SHIFT = 8u;  // so that the number of the first bucket fits
+
+// Depths of what a node's lists will hold.
+struct NodeRange {
+  uint low, high;
+  uint count;
+  uint unused;
+};
+SHARED_ASSERT_SIZE(NodeRange, 16)
+
+SHARED_END
