@@ -11,4 +11,5 @@ uvec4 groups_for(uint invocations) {
 void main() {
   counters.dispatch_blocks = groups_for(min(counters.blocks, pool_sizes.y) * 8u);
   counters.dispatch_entries = groups_for(min(counters.entries, pool_sizes.x));
+  counters.dispatch_nodes = groups_for(list_sizes.x + min(counters.nodes, list_sizes.y));
 }

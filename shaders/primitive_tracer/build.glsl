@@ -6,6 +6,7 @@ layout(std430, binding = 1) buffer Blocks { RasterBlock blocks[]; };
 layout(std430, binding = 2) buffer Counters { BuildCounters counters; };
 layout(location = 0) uniform uint triangle_count;
 layout(location = 1) uniform uvec2 pool_sizes;  // of entries, of blocks
+layout(location = 2) uniform uvec4 list_sizes;  // dense nodes; most allocated nodes, offsets, ids
 
 // The number of this invocation where work groups of 64 spread over x and y.
 uint invocation() { return gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u; }

@@ -31,7 +31,8 @@ struct BuildCounters {
   uint unused0, unused1, unused2;
   uvec4 dispatch_blocks;   // indirect dispatch over blocks, eight invocations each
   uvec4 dispatch_entries;  // indirect dispatch over entries
+  uvec4 dispatch_nodes;    // indirect dispatch over dense and allocated nodes
 };
-SHARED_ASSERT_SIZE(BuildCounters, 64)
+SHARED_ASSERT_SIZE(BuildCounters, 80)
 
 SHARED_END

@@ -1,0 +1,104 @@
+#include "primitive_tracer/build_pools.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace panoptes::primitive_tracer {
+
+namespace {
+
+// Numbers of entries are 32 bits; more than this would not be addressed by any driver either.
+constexpr uint64_t kMost = 1u << 30;
+
+// Makes room for `count` and a quarter more, so that geometry which moves seldom grows the pool.
+void raise(uint32_t& size, uint64_t count, const char* what) {
+  if (count <= size) return;
+  if (count > kMost)
+    fail("the structure for ray tracing would need {} {}: hide or simplify objects", count, what);
+  size = uint32_t(std::min(count + count / 4, kMost));
+}
+
+}  // namespace
+
+PoolSizes first_sizes(uint32_t triangles) {
+  // About what the shared scenes need; what is missing is found out by the first build.
+  const uint32_t n = std::min(triangles, 1u << 27);
+  return {.entries = 2 * n + 4096,
+          .blocks = n / 16 + 4096,
+          .nodes = n / 2 + 4096,
+          .offsets = 4 * n + 16384,
+          .ids = 3 * n + 16384};
+}
+
+void BuildPools::dispatch(uint32_t invocations) {
+  const uint32_t groups = (invocations + 63) / 64, across = std::min(groups, 65535u);
+  glDispatchCompute(across, across ? (groups + across - 1) / across : 0, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void BuildPools::dispatch(Indirect over) const {
+  const size_t offset = over == Indirect::kBlocks ? offsetof(shared::BuildCounters, dispatch_blocks)
+                        : over == Indirect::kEntries
+                            ? offsetof(shared::BuildCounters, dispatch_entries)
+                            : offsetof(shared::BuildCounters, dispatch_nodes);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, counters_.id());
+  glDispatchComputeIndirect(GLintptr(offset));
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense) {
+  sizes_.entries = std::max(sizes_.entries, at_least.entries);
+  sizes_.blocks = std::max(sizes_.blocks, at_least.blocks);
+  sizes_.nodes = std::max(sizes_.nodes, at_least.nodes);
+  sizes_.offsets = std::max(sizes_.offsets, at_least.offsets);
+  sizes_.ids = std::max(sizes_.ids, at_least.ids);
+  triangles_ = triangles;
+  dense_ = dense;
+  const auto reserve = [](gl::Buffer& buffer, int64_t bytes) {
+    if (buffer.bytes() >= bytes) return;
+    buffer = gl::Buffer();
+    buffer = gl::Buffer(bytes);
+  };
+  reserve(entries_, int64_t(sizes_.entries) * int64_t(sizeof(shared::CellEntry)));
+  reserve(blocks_, int64_t(sizes_.blocks) * int64_t(sizeof(shared::RasterBlock)));
+  reserve(counters_, sizeof(shared::BuildCounters));
+  counters_.clear();
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void BuildPools::use(const gl::Program& program) const {
+  program.use();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, entries_.id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, blocks_.id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, counters_.id());
+  glUniform1ui(0, triangles_);
+  glUniform2ui(1, sizes_.entries, sizes_.blocks);
+  glUniform4ui(2, dense_, sizes_.nodes, sizes_.offsets, sizes_.ids);
+}
+
+void BuildPools::write_arguments(gl::ProgramCache& programs) const {
+  gl::ProgramSource source;
+  source.name = "arguments of the structure's passes";
+  source.stages = {{GL_COMPUTE_SHADER, "primitive_tracer/arguments.comp"}};
+  use(programs.get(source));
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+bool BuildPools::fitted() {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  counters_.read(0, sizeof counts_, &counts_);
+  const PoolSizes before = sizes_;
+  raise(sizes_.entries, counts_.entries, "entries of triangles in cells");
+  raise(sizes_.blocks, counts_.blocks, "blocks of large triangles");
+  raise(sizes_.nodes, counts_.nodes, "divided cells");
+  raise(sizes_.offsets, counts_.offsets, "buckets");
+  raise(sizes_.ids, counts_.ids, "triangles in buckets");
+  return sizes_.entries == before.entries && sizes_.blocks == before.blocks &&
+         sizes_.nodes == before.nodes && sizes_.offsets == before.offsets &&
+         sizes_.ids == before.ids;
+}
+
+}  // namespace panoptes::primitive_tracer

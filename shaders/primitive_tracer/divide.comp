@@ -1,0 +1,34 @@
+// Divides crowded tiles into 2^k x 2^k parts and empties the nodes of tiles and parts.
+#include "primitive_tracer/build.glsl"
+#include "primitive_tracer/orthographic.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 3) writeonly buffer Nodes { uvec4 nodes[]; };
+layout(std430, binding = 4) buffer Ranges { NodeRange ranges[]; };
+layout(location = 3) uniform uvec2 division;  // triangles that a part should hold; most levels
+
+const NodeRange EMPTY = NodeRange(0xffffffffu, 0u, 0u, 0u);
+
+void main() {
+  uint tile = invocation();
+  if (tile >= list_sizes.x) return;
+  uint count = ranges[tile].unused, levels = 0u;
+  while (levels < division.y && count > division.x << (2u * levels)) ++levels;
+
+  uint first = 0u;
+  if (levels > 0u) {
+    uint parts = 1u << (2u * levels);
+    uint place = atomicAdd(counters.nodes, parts);
+    if (place + parts > list_sizes.y) {
+      levels = 0u;  // the host makes room and starts again
+    } else {
+      first = uint(box.grid.w) + place;
+      for (uint i = 0u; i < parts; ++i) {
+        nodes[first + i] = uvec4(0u);
+        ranges[first + i] = EMPTY;
+      }
+    }
+  }
+  nodes[tile] = uvec4(0u, 0u, first, levels);
+  ranges[tile] = EMPTY;
+}

@@ -1,0 +1,17 @@
+// The masks of divided tiles, from those of their parts.
+#include "primitive_tracer/build.glsl"
+#include "primitive_tracer/orthographic.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 3) buffer Nodes { uvec4 nodes[]; };
+
+void main() {
+  uint tile = invocation();
+  if (tile >= list_sizes.x) return;
+  uvec4 node = nodes[tile];
+  uint levels = node.w & NODE_LEVELS;
+  if (levels == 0u) return;
+  uint end = node.z + (1u << (2u * levels));
+  for (uint part = node.z; part < end; ++part) node.xy |= nodes[part].xy;
+  nodes[tile] = node;
+}

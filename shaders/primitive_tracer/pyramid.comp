@@ -1,0 +1,16 @@
+// One level of the pyramid of masks, from the level below.
+#include "primitive_tracer/build.glsl"
+#include "primitive_tracer/orthographic.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 3) buffer Nodes { uvec4 nodes[]; };
+layout(location = 3) uniform int level;  // that is written, from 1
+
+void main() {
+  int side = box.grid.y >> level, i = int(invocation());
+  if (i >= side * side) return;
+  int below = level_start(level - 1) + (i / side) * 2 * (2 * side) + (i % side) * 2;
+  int above = below + 2 * side;
+  nodes[level_start(level) + i] = uvec4(nodes[below].xy | nodes[below + 1].xy | nodes[above].xy |
+                                            nodes[above + 1].xy, 0u, 0u);
+}
