@@ -8,7 +8,7 @@
 //     Traversal traversal_begin(Ray ray);
 //     bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget);
 //     void traversal_save(Traversal at, uint word);     by put_word(word + i, value)
-//     Traversal traversal_load(uint word);              by get_word(word + i)
+//     Traversal traversal_load(Ray ray, uint word);     by get_word(word + i), with RESUMED 1 only
 //
 // traverse() looks for what `ray` meets before hit.t, by intersect() of tracing/intersect.glsl, which
 // keeps the closest (with ANY_HIT 1: whatever is met ends the search). It returns true when it is

@@ -42,7 +42,7 @@ void main() {
   TracedHit hit = TracedHit(uintBitsToFloat(get_word(word + 1u)), get_word(word + 2u),
                             uintBitsToFloat(get_word(word + 3u)),
                             uintBitsToFloat(get_word(word + 4u)));
-  Traversal at = traversal_load(word + 5u);
+  Traversal at = traversal_load(ray, word + 5u);
 #else
   uint index = slot;
   Ray ray = fetch_ray(index);
