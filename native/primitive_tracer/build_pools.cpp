@@ -48,7 +48,8 @@ void BuildPools::dispatch(Indirect over) const {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense) {
+void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense,
+                       uint32_t entry_limit) {
   sizes_.entries = std::max(sizes_.entries, at_least.entries);
   sizes_.blocks = std::max(sizes_.blocks, at_least.blocks);
   sizes_.nodes = std::max(sizes_.nodes, at_least.nodes);
@@ -56,6 +57,7 @@ void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t d
   sizes_.ids = std::max(sizes_.ids, at_least.ids);
   triangles_ = triangles;
   dense_ = dense;
+  entry_limit_ = entry_limit;
   const auto reserve = [](gl::Buffer& buffer, int64_t bytes) {
     if (buffer.bytes() >= bytes) return;
     buffer = gl::Buffer();
@@ -76,6 +78,7 @@ void BuildPools::use(const gl::Program& program) const {
   glUniform1ui(0, triangles_);
   glUniform2ui(1, sizes_.entries, sizes_.blocks);
   glUniform4ui(2, dense_, sizes_.nodes, sizes_.offsets, sizes_.ids);
+  glUniform1ui(4, entry_limit_);
 }
 
 void BuildPools::write_arguments(gl::ProgramCache& programs) const {
@@ -90,6 +93,7 @@ void BuildPools::write_arguments(gl::ProgramCache& programs) const {
 bool BuildPools::fitted() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   counters_.read(0, sizeof counts_, &counts_);
+  if (over_limit()) return false;
   const PoolSizes before = sizes_;
   raise(sizes_.entries, counts_.entries, "entries of triangles in cells");
   raise(sizes_.blocks, counts_.blocks, "blocks of large triangles");

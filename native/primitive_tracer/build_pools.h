@@ -30,8 +30,9 @@ class BuildPools {
   enum class Indirect { kBlocks, kEntries, kNodes };
   void dispatch(Indirect over) const;
 
-  // Sets what a build begins with; a pool never shrinks. `dense` nodes exist anyhow.
-  void begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense);
+  // Sets what a build begins with; a pool never shrinks. `dense` nodes exist anyhow. Rasterisation
+  // stops soon after `entry_limit` entries.
+  void begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense, uint32_t entry_limit);
   // Binds pools and sets the uniforms that build.glsl declares, for the program in use.
   void use(const gl::Program& program) const;
   // Writes the arguments of indirect dispatches from the counts so far.
@@ -39,6 +40,8 @@ class BuildPools {
   // Reads the counts. False when something did not fit: sizes have been raised then, and the build
   // must start again.
   bool fitted();
+  // Valid after fitted(): there were more entries than the limit, and sizes are as they were.
+  bool over_limit() const { return counts_.entries > entry_limit_; }
 
   const PoolSizes& sizes() const { return sizes_; }
   const shared::BuildCounters& counts() const { return counts_; }
@@ -46,7 +49,7 @@ class BuildPools {
 
  private:
   PoolSizes sizes_;
-  uint32_t triangles_ = 0, dense_ = 0;
+  uint32_t triangles_ = 0, dense_ = 0, entry_limit_ = 0;
   gl::Buffer entries_, blocks_, counters_;
   shared::BuildCounters counts_{};
 };

@@ -7,6 +7,10 @@ layout(std430, binding = 2) buffer Counters { BuildCounters counters; };
 layout(location = 0) uniform uint triangle_count;
 layout(location = 1) uniform uvec2 pool_sizes;  // of entries, of blocks
 layout(location = 2) uniform uvec4 list_sizes;  // dense nodes; most allocated nodes, offsets, ids
+layout(location = 4) uniform uint entry_limit;  // more are not wanted: the host takes larger cells
+
+// True when the build is in vain already.
+bool too_many_entries() { return counters.entries > entry_limit; }
 
 // The number of this invocation where work groups of 64 spread over x and y.
 uint invocation() { return gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u; }

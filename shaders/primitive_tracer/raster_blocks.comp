@@ -9,7 +9,7 @@ const float CELL_REACH = 0.52;  // as in raster_triangles.comp
 
 void main() {
   uint row = invocation();
-  if (row / 8u >= min(counters.blocks, pool_sizes.y)) return;
+  if (row / 8u >= min(counters.blocks, pool_sizes.y) || too_many_entries()) return;
   RasterBlock block = blocks[row / 8u];
   Placed placed;
   ivec4 cells;

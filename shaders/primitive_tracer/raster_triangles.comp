@@ -20,7 +20,7 @@ const float BLOCK_REACH = 4.1;
 
 void main() {
   uint primitive = invocation();
-  if (primitive >= triangle_count) return;
+  if (primitive >= triangle_count || too_many_entries()) return;
   for (uint views = views_of(primitive); views != 0u; views &= views - 1u) {
     uint view = uint(findLSB(views));
     Placed placed;

@@ -1,0 +1,193 @@
+#include "primitive_tracer/orthographic_tracer.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace panoptes::primitive_tracer {
+
+namespace {
+
+constexpr int kMostTiles = 1024;
+
+// Entries that a build may have where tiles are chosen by us: many triangles that each cross most of
+// the scene get larger tiles instead.
+uint32_t entry_limit(uint32_t triangles) {
+  return uint32_t(std::min<uint64_t>(uint64_t(triangles) * 32 + (1u << 20), 1u << 30));
+}
+
+int chosen_tiles(uint32_t triangles) {
+  const double side = std::sqrt(triangles / 8.0);
+  return std::clamp(int(std::bit_floor(unsigned(side))), 1, 512);
+}
+
+gl::ProgramSource pass(const char* name, const char* file, int placed = -1) {
+  gl::ProgramSource source;
+  source.name = fmt::format("structure: {}", name);
+  source.stages = {{GL_COMPUTE_SHADER, fmt::format("primitive_tracer/{}", file)}};
+  source.snippets["generated/views.glsl"] = "#include \"primitive_tracer/orthographic_raster.glsl\"\n";
+  if (placed >= 0) source.defines = {fmt::format("PLACED {}", placed)};
+  return source;
+}
+
+gl::ProgramSource density() { return pass("density", "density.comp"); }
+gl::ProgramSource divide() { return pass("divide", "divide.comp"); }
+gl::ProgramSource raster_triangles() { return pass("triangles", "raster_triangles.comp"); }
+gl::ProgramSource raster_blocks() { return pass("blocks", "raster_blocks.comp"); }
+gl::ProgramSource buckets(int placed) { return pass("buckets", "buckets.comp", placed); }
+gl::ProgramSource gather() { return pass("gather", "gather.comp"); }
+gl::ProgramSource pyramid() { return pass("pyramid", "pyramid.comp"); }
+gl::ProgramSource fill(int placed) { return pass("fill", "fill.comp", placed); }
+
+}  // namespace
+
+std::vector<gl::ProgramSource> orthographic_build_programs() {
+  return {density(), divide(),  raster_triangles(), raster_blocks(), buckets(0),
+          buckets(1), gather(), pyramid(),          fill(0),         fill(1)};
+}
+
+OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, const PoolSizes& first)
+    : settings_(settings), first_(first) {
+  if (settings.tiles < 0 || settings.tiles > kMostTiles)
+    fail("{} tiles a side were asked for: choose 1 to {}, or 0 for as many as the scene needs",
+         settings.tiles, kMostTiles);
+}
+
+void OrthographicTracer::place(const scene::Bounds& bounds, int tiles) {
+  // A little more than the scene, so that nothing lies on the border, and never flat.
+  glm::vec3 low(0), size(1);
+  if (!bounds.empty()) {
+    size = bounds.high - bounds.low;
+    const float largest = std::max({size.x, size.y, size.z});
+    const glm::vec3 magnitude = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+    const float least = std::max({largest * 1e-6f, 1e-6f * std::max({magnitude.x, magnitude.y, magnitude.z}), 1e-30f});
+    const glm::vec3 margin = size * 1e-4f + least;
+    low = bounds.low - margin;
+    size += 2.0f * margin;
+  }
+  const int axis = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
+  const float across = std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]);
+  view_.low = glm::vec4(low, float(tiles) / across);
+  view_.depth = glm::vec4(1.0f / size[axis], 0, 0, 0);
+  const int dense = (4 * tiles * tiles - 1) / 3;
+  view_.grid = {axis, tiles, std::countr_zero(unsigned(tiles)), dense};
+  if (!view_block_) view_block_ = gl::Buffer(sizeof view_);
+  view_block_.write(0, sizeof view_, &view_);
+}
+
+void OrthographicTracer::reserve() {
+  const auto grow = [](gl::Buffer& buffer, int64_t bytes) {
+    if (buffer.bytes() >= bytes) return false;
+    buffer = gl::Buffer();
+    buffer = gl::Buffer(bytes);
+    return true;
+  };
+  const PoolSizes& sizes = pools_.sizes();
+  const int64_t nodes = int64_t(view_.grid.w) + sizes.nodes;
+  if (grow(nodes_, nodes * 16)) node_texture_ = gl::Texture(GL_RGBA32UI, nodes_);
+  grow(ranges_, nodes * int64_t(sizeof(shared::NodeRange)));
+  if (grow(offsets_, int64_t(sizes.offsets) * 4)) offset_texture_ = gl::Texture(GL_R32UI, offsets_);
+  if (grow(ids_, int64_t(sizes.ids) * 4)) id_texture_ = gl::Texture(GL_R32UI, ids_);
+}
+
+void OrthographicTracer::build(const tracing::TriangleList& triangles, gl::ProgramCache& programs,
+                               gl::PassTimer& timer) {
+  const uint32_t count = triangles.count();
+  const bool chosen = settings_.tiles == 0;
+  int tiles = chosen ? chosen_tiles(count) : int(std::bit_ceil(unsigned(settings_.tiles)));
+  PoolSizes sizes = first_.entries ? first_ : first_sizes(count);
+  triangles.texture().bind(tracing::kTriangleUnit);
+  for (bool fitted = false; !fitted;) {
+    place(triangles.bounds(), tiles);
+    pools_.begin(sizes, count, uint32_t(tiles * tiles),
+                 chosen && tiles > 1 ? entry_limit(count) : 1u << 30);
+    reserve();
+    glBindBufferBase(GL_UNIFORM_BUFFER, tracing::kStructureBlock, view_block_.id());
+    run_passes(count, programs, timer);
+    fitted = pools_.fitted();
+    if (fitted || !pools_.over_limit()) continue;
+    if (!chosen || tiles == 1)
+      fail("the scene's triangles cross more than {} cells of the structure for ray tracing: choose "
+           "fewer tiles, or hide or simplify objects",
+           1u << 30);
+    tiles /= 2;
+  }
+}
+
+void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& programs,
+                                    gl::PassTimer& timer) {
+  using Indirect = BuildPools::Indirect;
+  const auto bind = [&](unsigned binding, const gl::Buffer& buffer) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id());
+  };
+  bind(3, nodes_);
+  bind(4, ranges_);
+  bind(5, offsets_);
+  bind(6, ids_);
+  const uint32_t tiles = uint32_t(view_.grid.y * view_.grid.y);
+  {
+    gl::PassScope scope(timer, "structure_divide");
+    const uint32_t zero = 0;
+    glClearNamedBufferSubData(ranges_.id(), GL_R32UI, 0, tiles * sizeof(shared::NodeRange),
+                              GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    pools_.use(programs.get(density()));
+    BuildPools::dispatch(triangles);
+    pools_.use(programs.get(divide()));
+    glUniform2ui(3, uint32_t(settings_.triangles_a_part), uint32_t(settings_.divisions));
+    BuildPools::dispatch(tiles);
+  }
+  {
+    gl::PassScope scope(timer, "structure_raster");
+    pools_.use(programs.get(raster_triangles()));
+    BuildPools::dispatch(triangles);
+    pools_.write_arguments(programs);
+    pools_.use(programs.get(raster_blocks()));
+    pools_.dispatch(Indirect::kBlocks);
+    pools_.write_arguments(programs);
+  }
+  {
+    gl::PassScope scope(timer, "structure_pyramid");
+    pools_.use(programs.get(gather()));
+    BuildPools::dispatch(tiles);
+    pools_.use(programs.get(pyramid()));
+    for (int level = 1; level <= view_.grid.z; ++level) {
+      glUniform1i(3, level);
+      BuildPools::dispatch(tiles >> (2 * level));
+    }
+  }
+  gl::PassScope scope(timer, "structure_lists");
+  pools_.use(programs.get(buckets(0)));
+  glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
+  pools_.dispatch(Indirect::kNodes);
+  pools_.use(programs.get(fill(0)));
+  pools_.dispatch(Indirect::kEntries);
+  pools_.use(programs.get(buckets(1)));
+  pools_.dispatch(Indirect::kNodes);
+  pools_.use(programs.get(fill(1)));
+  pools_.dispatch(Indirect::kEntries);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void OrthographicTracer::add_to(gl::ProgramSource& source) const {
+  source.snippets["generated/tracer.glsl"] =
+      "#include \"primitive_tracer/orthographic_traverse.glsl\"\n";
+}
+
+void OrthographicTracer::bind() const {
+  node_texture_.bind(tracing::kStructureUnit);
+  offset_texture_.bind(tracing::kStructureUnit + 1);
+  id_texture_.bind(tracing::kStructureUnit + 2);
+  glBindBufferBase(GL_UNIFORM_BUFFER, tracing::kStructureBlock, view_block_.id());
+}
+
+int64_t OrthographicTracer::bytes() const {
+  const shared::BuildCounters& counts = pools_.counts();
+  return 16 * (int64_t(view_.grid.w) + counts.nodes) + 4 * int64_t(counts.offsets) +
+         4 * int64_t(counts.ids);
+}
+
+}  // namespace panoptes::primitive_tracer
