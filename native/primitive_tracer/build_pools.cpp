@@ -39,12 +39,12 @@ void BuildPools::dispatch(uint32_t invocations) {
 }
 
 void BuildPools::dispatch(Indirect over) const {
-  const size_t offset = over == Indirect::kBlocks ? offsetof(shared::BuildCounters, dispatch_blocks)
-                        : over == Indirect::kEntries
-                            ? offsetof(shared::BuildCounters, dispatch_entries)
-                            : offsetof(shared::BuildCounters, dispatch_nodes);
+  const size_t offsets[] = {offsetof(shared::BuildCounters, dispatch_blocks),
+                            offsetof(shared::BuildCounters, dispatch_entries),
+                            offsetof(shared::BuildCounters, dispatch_nodes),
+                            offsetof(shared::BuildCounters, dispatch_crowded)};
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, counters_.id());
-  glDispatchComputeIndirect(GLintptr(offset));
+  glDispatchComputeIndirect(GLintptr(offsets[size_t(over)]));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -59,11 +59,13 @@ void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t d
   dense_ = dense;
   entry_limit_ = entry_limit;
   const auto reserve = [](gl::Buffer& buffer, int64_t bytes) {
-    if (buffer.bytes() >= bytes) return;
+    if (buffer.bytes() >= bytes) return false;
     buffer = gl::Buffer();
     buffer = gl::Buffer(bytes);
+    return true;
   };
-  reserve(entries_, int64_t(sizes_.entries) * int64_t(sizeof(shared::CellEntry)));
+  if (reserve(entries_, int64_t(sizes_.entries) * int64_t(sizeof(shared::CellEntry))))
+    entries_texture_ = gl::Texture(GL_RGBA32UI, entries_);
   reserve(blocks_, int64_t(sizes_.blocks) * int64_t(sizeof(shared::RasterBlock)));
   reserve(counters_, sizeof(shared::BuildCounters));
   counters_.clear();
@@ -96,7 +98,7 @@ bool BuildPools::fitted() {
   if (over_limit()) return false;
   const PoolSizes before = sizes_;
   raise(sizes_.entries, counts_.entries, "entries of triangles in cells");
-  raise(sizes_.blocks, counts_.blocks, "blocks of large triangles");
+  raise(sizes_.blocks, std::max(counts_.blocks, counts_.crowded), "blocks of large triangles");
   raise(sizes_.nodes, counts_.nodes, "divided cells");
   raise(sizes_.offsets, counts_.offsets, "buckets");
   raise(sizes_.ids, counts_.ids, "triangles in buckets");

@@ -27,7 +27,7 @@ class BuildPools {
  public:
   // Work groups of 64 over x and y, with barriers for what follows.
   static void dispatch(uint32_t invocations);
-  enum class Indirect { kBlocks, kEntries, kNodes };
+  enum class Indirect { kBlocks, kEntries, kNodes, kCrowded };
   void dispatch(Indirect over) const;
 
   // Sets what a build begins with; a pool never shrinks. `dense` nodes exist anyhow. Rasterisation
@@ -43,6 +43,9 @@ class BuildPools {
   // Valid after fitted(): there were more entries than the limit, and sizes are as they were.
   bool over_limit() const { return counts_.entries > entry_limit_; }
 
+  // The entries as a buffer texture of RGBA32UI, one texel each.
+  const gl::Texture& entries() const { return entries_texture_; }
+
   const PoolSizes& sizes() const { return sizes_; }
   const shared::BuildCounters& counts() const { return counts_; }
   int64_t bytes() const { return entries_.bytes() + blocks_.bytes() + counters_.bytes(); }
@@ -51,6 +54,7 @@ class BuildPools {
   PoolSizes sizes_;
   uint32_t triangles_ = 0, dense_ = 0, entry_limit_ = 0;
   gl::Buffer entries_, blocks_, counters_;
+  gl::Texture entries_texture_;
   shared::BuildCounters counts_{};
 };
 

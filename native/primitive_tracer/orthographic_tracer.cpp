@@ -25,29 +25,36 @@ int chosen_tiles(uint32_t triangles) {
   return std::clamp(int(std::bit_floor(unsigned(side))), 1, 512);
 }
 
-gl::ProgramSource pass(const char* name, const char* file, int placed = -1) {
+gl::ProgramSource pass(const char* name, const char* file, const char* define = nullptr) {
   gl::ProgramSource source;
   source.name = fmt::format("structure: {}", name);
   source.stages = {{GL_COMPUTE_SHADER, fmt::format("primitive_tracer/{}", file)}};
   source.snippets["generated/views.glsl"] = "#include \"primitive_tracer/orthographic_raster.glsl\"\n";
-  if (placed >= 0) source.defines = {fmt::format("PLACED {}", placed)};
+  if (define) source.defines = {define};
   return source;
 }
 
 gl::ProgramSource density() { return pass("density", "density.comp"); }
 gl::ProgramSource divide() { return pass("divide", "divide.comp"); }
-gl::ProgramSource raster_triangles() { return pass("triangles", "raster_triangles.comp"); }
-gl::ProgramSource raster_blocks() { return pass("blocks", "raster_blocks.comp"); }
-gl::ProgramSource buckets(int placed) { return pass("buckets", "buckets.comp", placed); }
+gl::ProgramSource raster_triangles(bool listed) {
+  return pass("triangles", "raster_triangles.comp", listed ? "LISTED 1" : "LISTED 0");
+}
+gl::ProgramSource raster_blocks(bool listed) {
+  return pass("blocks", "raster_blocks.comp", listed ? "LISTED 1" : "LISTED 0");
+}
+gl::ProgramSource begin_lists() { return pass("lists", "begin_lists.comp"); }
+gl::ProgramSource sort_lists(bool crowded) {
+  return pass("sorting", "sort_lists.comp", crowded ? "CROWDED 1" : "CROWDED 0");
+}
 gl::ProgramSource gather() { return pass("gather", "gather.comp"); }
 gl::ProgramSource pyramid() { return pass("pyramid", "pyramid.comp"); }
-gl::ProgramSource fill(int placed) { return pass("fill", "fill.comp", placed); }
 
 }  // namespace
 
 std::vector<gl::ProgramSource> orthographic_build_programs() {
-  return {density(), divide(),  raster_triangles(), raster_blocks(), buckets(0),
-          buckets(1), gather(), pyramid(),          fill(0),         fill(1)};
+  return {density(),     divide(),          raster_triangles(false), raster_triangles(true),
+          begin_lists(), sort_lists(false), raster_blocks(false),    raster_blocks(true),
+          gather(),      sort_lists(true),  pyramid()};
 }
 
 OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, const PoolSizes& first)
@@ -89,7 +96,7 @@ void OrthographicTracer::reserve() {
   const PoolSizes& sizes = pools_.sizes();
   const int64_t nodes = int64_t(view_.grid.w) + sizes.nodes;
   if (grow(nodes_, nodes * 16)) node_texture_ = gl::Texture(GL_RGBA32UI, nodes_);
-  grow(ranges_, nodes * int64_t(sizeof(shared::NodeRange)));
+  grow(lists_, nodes * int64_t(sizeof(shared::NodeList)));
   if (grow(offsets_, int64_t(sizes.offsets) * 4)) offset_texture_ = gl::Texture(GL_R32UI, offsets_);
   if (grow(ids_, int64_t(sizes.ids) * 4)) id_texture_ = gl::Texture(GL_R32UI, ids_);
 }
@@ -125,14 +132,14 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id());
   };
   bind(3, nodes_);
-  bind(4, ranges_);
+  bind(4, lists_);
   bind(5, offsets_);
   bind(6, ids_);
   const uint32_t tiles = uint32_t(view_.grid.y * view_.grid.y);
   {
     gl::PassScope scope(timer, "structure_divide");
     const uint32_t zero = 0;
-    glClearNamedBufferSubData(ranges_.id(), GL_R32UI, 0, tiles * sizeof(shared::NodeRange),
+    glClearNamedBufferSubData(lists_.id(), GL_R32UI, 0, tiles * sizeof(shared::NodeList),
                               GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
     pools_.use(programs.get(density()));
     BuildPools::dispatch(triangles);
@@ -140,35 +147,39 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
     glUniform2ui(3, uint32_t(settings_.triangles_a_part), uint32_t(settings_.divisions));
     BuildPools::dispatch(tiles);
   }
-  {
-    gl::PassScope scope(timer, "structure_raster");
-    pools_.use(programs.get(raster_triangles()));
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  node_texture_.bind(tracing::kStructureUnit);
+  for (const bool listed : {false, true}) {
+    gl::PassScope scope(timer, listed ? "structure_list" : "structure_count");
+    pools_.use(programs.get(raster_triangles(listed)));
     BuildPools::dispatch(triangles);
-    pools_.write_arguments(programs);
-    pools_.use(programs.get(raster_blocks()));
+    if (!listed) pools_.write_arguments(programs);
+    pools_.use(programs.get(raster_blocks(listed)));
     pools_.dispatch(Indirect::kBlocks);
-    pools_.write_arguments(programs);
+    if (listed) continue;
+    pools_.use(programs.get(begin_lists()));
+    pools_.dispatch(Indirect::kNodes);
   }
   {
-    gl::PassScope scope(timer, "structure_pyramid");
-    pools_.use(programs.get(gather()));
-    BuildPools::dispatch(tiles);
-    pools_.use(programs.get(pyramid()));
-    for (int level = 1; level <= view_.grid.z; ++level) {
-      glUniform1i(3, level);
-      BuildPools::dispatch(tiles >> (2 * level));
-    }
+    gl::PassScope scope(timer, "structure_sort");
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    pools_.entries().bind(tracing::kStructureUnit);
+    pools_.use(programs.get(sort_lists(false)));
+    glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
+    pools_.dispatch(Indirect::kNodes);
+    pools_.write_arguments(programs);
+    pools_.use(programs.get(sort_lists(true)));
+    glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
+    pools_.dispatch(Indirect::kCrowded);
   }
-  gl::PassScope scope(timer, "structure_lists");
-  pools_.use(programs.get(buckets(0)));
-  glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
-  pools_.dispatch(Indirect::kNodes);
-  pools_.use(programs.get(fill(0)));
-  pools_.dispatch(Indirect::kEntries);
-  pools_.use(programs.get(buckets(1)));
-  pools_.dispatch(Indirect::kNodes);
-  pools_.use(programs.get(fill(1)));
-  pools_.dispatch(Indirect::kEntries);
+  gl::PassScope scope(timer, "structure_pyramid");
+  pools_.use(programs.get(gather()));
+  BuildPools::dispatch(tiles);
+  pools_.use(programs.get(pyramid()));
+  for (int level = 1; level <= view_.grid.z; ++level) {
+    glUniform1i(3, level);
+    BuildPools::dispatch(tiles >> (2 * level));
+  }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

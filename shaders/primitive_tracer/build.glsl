@@ -1,6 +1,11 @@
 // The pools that rasterisation fills: entries of cells, and blocks of large triangles.
 #include "primitive_tracer/build_shared.h"
 
+// Arrangements that rasterise twice define LISTED as 0, then as 1.
+#ifndef LISTED
+#define LISTED 0
+#endif
+
 layout(std430, binding = 0) buffer Entries { CellEntry entries[]; };
 layout(std430, binding = 1) buffer Blocks { RasterBlock blocks[]; };
 layout(std430, binding = 2) buffer Counters { BuildCounters counters; };
@@ -10,7 +15,9 @@ layout(location = 2) uniform uvec4 list_sizes;  // dense nodes; most allocated n
 layout(location = 4) uniform uint entry_limit;  // more are not wanted: the host takes larger cells
 
 // True when the build is in vain already.
-bool too_many_entries() { return counters.entries > entry_limit; }
+bool too_many_entries() {
+  return counters.entries > entry_limit || counters.blocks > entry_limit / 16u;
+}
 
 // The number of this invocation where work groups of 64 spread over x and y.
 uint invocation() { return gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u; }

@@ -28,11 +28,13 @@ struct BuildCounters {
   uint nodes;    // that an arrangement allocates beside its dense ones
   uint offsets;  // words that say where buckets begin
   uint ids;      // triangles in buckets
-  uint unused0, unused1, unused2;
+  uint crowded;  // nodes that a work group sorts
+  uint unused0, unused1;
   uvec4 dispatch_blocks;   // indirect dispatch over blocks, eight invocations each
   uvec4 dispatch_entries;  // indirect dispatch over entries
   uvec4 dispatch_nodes;    // indirect dispatch over dense and allocated nodes
+  uvec4 dispatch_crowded;  // indirect dispatch over crowded nodes, a work group each
 };
-SHARED_ASSERT_SIZE(BuildCounters, 80)
+SHARED_ASSERT_SIZE(BuildCounters, 96)
 
 SHARED_END

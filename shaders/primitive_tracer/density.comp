@@ -3,7 +3,7 @@
 #include "primitive_tracer/orthographic.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 4) buffer Ranges { NodeRange ranges[]; };
+layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 
 void main() {
   uint primitive = invocation();
@@ -12,5 +12,5 @@ void main() {
   if ((corners.flags & TRIANGLE_SEEN_BY) == 0u) return;
   vec3 middle = to_tiles(corners.p0 + ((corners.p1 - corners.p0) + (corners.p2 - corners.p0)) / 3.0);
   ivec2 tile = clamp(ivec2(middle.xy), ivec2(0), ivec2(box.grid.y - 1));
-  atomicAdd(ranges[tile.y * box.grid.y + tile.x].unused, 1u);
+  atomicAdd(lists[tile.y * box.grid.y + tile.x].start, 1u);
 }

@@ -4,15 +4,13 @@
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) writeonly buffer Nodes { uvec4 nodes[]; };
-layout(std430, binding = 4) buffer Ranges { NodeRange ranges[]; };
+layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 layout(location = 3) uniform uvec2 division;  // triangles that a part should hold; most levels
-
-const NodeRange EMPTY = NodeRange(0xffffffffu, 0u, 0u, 0u);
 
 void main() {
   uint tile = invocation();
   if (tile >= list_sizes.x) return;
-  uint count = ranges[tile].unused, levels = 0u;
+  uint count = lists[tile].start, levels = 0u;
   while (levels < division.y && count > division.x << (2u * levels)) ++levels;
 
   uint first = 0u;
@@ -25,10 +23,10 @@ void main() {
       first = uint(box.grid.w) + place;
       for (uint i = 0u; i < parts; ++i) {
         nodes[first + i] = uvec4(0u);
-        ranges[first + i] = EMPTY;
+        lists[first + i] = NodeList(0u, 0u);
       }
     }
   }
   nodes[tile] = uvec4(0u, 0u, first, levels);
-  ranges[tile] = EMPTY;
+  lists[tile] = NodeList(0u, 0u);
 }

@@ -1,9 +1,7 @@
 // The masks of divided tiles, from those of their parts.
-#include "primitive_tracer/build.glsl"
-#include "primitive_tracer/orthographic.glsl"
+#include "primitive_tracer/nodes.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 3) buffer Nodes { uvec4 nodes[]; };
 
 void main() {
   uint tile = invocation();

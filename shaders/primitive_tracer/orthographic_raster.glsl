@@ -1,9 +1,11 @@
 // Triangles in the orthographic view, for the raster passes: tile by tile, and in divided tiles part
-// by part, each with the range of depths that the triangle has there.
+// by part. They run twice, first (LISTED 0) to count the triangles of each node, then to list them
+// with the range of depths that each has there: rasterising again is cheaper than a stream of
+// entries through memory, whose every place costs an atomic that all threads want.
 #include "primitive_tracer/orthographic.glsl"
 
-layout(std430, binding = 3) buffer Nodes { uint node_words[]; };  // four a node
-layout(std430, binding = 4) buffer Ranges { uint range_words[]; };  // as NodeRange
+layout(binding = 1) uniform usamplerBuffer nodes;
+layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 
 // Half a cell and a margin for rounding, in cells.
 const float REACH = 0.52;
@@ -71,7 +73,11 @@ bool overlaps(Placed placed, vec2 centre, float half_size) {
   return all(greaterThanEqual(e, -reach)) || (placed.edge_on && all(lessThanEqual(e, reach)));
 }
 
+// Counts the triangle in a node, or lists it with its depths there.
 void list(uint primitive, Placed placed, uint node, vec2 centre, float half_size) {
+  uint slot = atomicAdd(lists[node].end, 1u);
+#if LISTED
+  if (slot >= pool_sizes.x) return;  // the host makes room and starts again
   // The plane over the cell, no further than the triangle itself.
   vec2 offset = centre - placed.corner.xy;
   float depth = placed.corner.z + dot(placed.slope, offset);
@@ -81,24 +87,19 @@ void list(uint primitive, Placed placed, uint node, vec2 centre, float half_size
                              : clamp(depth - reach, placed.depth_low, placed.depth_high);
   float high = placed.edge_on ? placed.depth_high
                               : clamp(depth + reach, placed.depth_low, placed.depth_high);
-  uint first = depth_code(low - DEPTH_MARGIN), last = depth_code(high + DEPTH_MARGIN);
-  atomicMin(range_words[4u * node], first);
-  atomicMax(range_words[4u * node + 1u], last);
-  atomicAdd(range_words[4u * node + 2u], 1u);
-  uvec2 mask = mask_between(first >> MASK_SHIFT, last >> MASK_SHIFT);
-  if (mask.x != 0u) atomicOr(node_words[4u * node], mask.x);
-  if (mask.y != 0u) atomicOr(node_words[4u * node + 1u], mask.y);
-  add_entry(node, primitive, first, last);
+  entries[slot] =
+      CellEntry(node, primitive, depth_code(low - DEPTH_MARGIN), depth_code(high + DEPTH_MARGIN));
+#endif
 }
 
 void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
   uint tile = uint(cell.y * box.grid.y + cell.x);
-  uint levels = node_words[4u * tile + 3u] & NODE_LEVELS;
+  uvec4 node = texelFetch(nodes, int(tile));
+  uint levels = node.w & NODE_LEVELS;
   if (levels == 0u) {
     list(primitive, placed, tile, vec2(cell) + 0.5, REACH);
     return;
   }
-  uint first = node_words[4u * tile + 2u];
   int parts = 1 << levels;
   float size = 1.0 / float(parts);
   ivec2 corner = cell * parts;
@@ -109,7 +110,7 @@ void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
     vec2 centre = (vec2(part) + 0.5) * size;
     ivec2 within = part - corner;
     if (overlaps(placed, centre, REACH * size))
-      list(primitive, placed, first + uint(within.y * parts + within.x), centre, REACH * size);
+      list(primitive, placed, node.z + uint(within.y * parts + within.x), centre, REACH * size);
     part = part.x < to.x ? ivec2(part.x + 1, part.y) : ivec2(from.x, part.y + 1);
   }
 }

@@ -32,12 +32,12 @@ const uint NODE_FIRST = 18u;
 const uint MOST_BUCKETS = 256u;
 const uint LEAST_SHIFT = 8u;  // so that the number of the first bucket fits
 
-// Depths of what a node's lists will hold.
-struct NodeRange {
-  uint low, high;
-  uint count;
-  uint unused;
+// The triangles that cross a node, while it is built: first counted, then listed as entries from
+// `start` on.
+struct NodeList {
+  uint end;    // behind the last entry; before there are any, how many there will be
+  uint start;  // before that, triangles whose middle is in the tile
 };
-SHARED_ASSERT_SIZE(NodeRange, 16)
+SHARED_ASSERT_SIZE(NodeList, 8)
 
 SHARED_END

@@ -136,11 +136,12 @@ void step_cell(inout Traversal at) {
   if (hit && leaf) {
     int shift = int(node.w >> NODE_SHIFT & 31u), last = int(node.w >> NODE_BUCKETS & 511u);
     int first = int(node.w >> NODE_FIRST);
-    int from = clamp(int(low >> shift) - first, 0, last);
-    int to = clamp(int(high >> shift) - first, 0, last);
-    at.entry = texelFetch(offsets, int(node.z) + from).x;
-    at.entry_end = texelFetch(offsets, int(node.z) + to + 1).x;
-    COUNT_LIST(uint(index), at.entry_end - at.entry)
+    int from = int(low >> shift) - first, to = int(high >> shift) - first;
+    if (from <= last && to >= 0) {
+      at.entry = texelFetch(offsets, int(node.z) + max(from, 0)).x;
+      at.entry_end = texelFetch(offsets, int(node.z) + min(to, last) + 1).x;
+      COUNT_LIST(uint(index), at.entry_end - at.entry)
+    }
   }
 
   // Down to the child that holds the ray at s, several levels at once.

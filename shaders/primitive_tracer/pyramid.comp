@@ -1,9 +1,7 @@
 // One level of the pyramid of masks, from the level below.
-#include "primitive_tracer/build.glsl"
-#include "primitive_tracer/orthographic.glsl"
+#include "primitive_tracer/nodes.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 3) buffer Nodes { uvec4 nodes[]; };
 layout(location = 3) uniform int level;  // that is written, from 1
 
 void main() {

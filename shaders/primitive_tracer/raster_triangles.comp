@@ -33,7 +33,7 @@ void main() {
         if (overlaps(placed, vec2(cell) + 0.5, CELL_REACH)) emit(primitive, view, placed, cell);
         cell = cell.x < cells.z ? ivec2(cell.x + 1, cell.y) : ivec2(cells.x, cell.y + 1);
       }
-    } else {
+    } else if (LISTED == 0) {  // they are in the queue from then on
       ivec4 range = cells >> 3;
       ivec2 block = range.xy;
       for (int i = (range.z - range.x + 1) * (range.w - range.y + 1); i > 0; --i) {

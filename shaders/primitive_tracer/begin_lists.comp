@@ -1,0 +1,13 @@
+// Gives every node room for the entries that were counted in it.
+#include "primitive_tracer/nodes.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() {
+  if (invocation() >= node_count()) return;
+  uint node = node_number(invocation()), count = lists[node].end;
+  // What wraps around would look as if it fitted.
+  if (count == 0u || counters.entries > 0xc0000000u) return;
+  uint start = atomicAdd(counters.entries, count);
+  lists[node] = NodeList(start, start);
+}

@@ -1,0 +1,122 @@
+// Sorts the entries of every node into buckets over depth, as many as its triangles deserve, one
+// behind the other, so that what a ray passes in a node is one run; and makes the node's mask.
+//
+// One invocation a node (CROWDED 0). Nodes with so many entries that one would take too long go to a
+// queue, and a work group sorts each of them (CROWDED 1).
+#include "primitive_tracer/nodes.glsl"
+
+layout(local_size_x = 64) in;
+layout(binding = 1) uniform usamplerBuffer listed;  // the entries: reads are faster this way
+layout(std430, binding = 5) buffer Offsets { uint offsets[]; };
+layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
+layout(location = 3) uniform uint buckets_per_triangle;
+
+#if CROWDED
+shared uint shared_low, shared_high, shared_start, shared_mask[2];
+#define FIRST gl_LocalInvocationIndex
+#define STRIDE 64u
+#define ALONE (gl_LocalInvocationIndex == 0u)
+#define WAIT memoryBarrier(); barrier();
+#else
+// Entries of a node that one invocation sorts: all its loops together stay far below llvmpipe's
+// limit of iterations.
+const uint MOST_ENTRIES = 512u;
+#define FIRST 0u
+#define STRIDE 1u
+#define ALONE true
+#define WAIT
+#endif
+
+void sort(uint node, uint start, uint end) {
+  // The depths of all entries, and which slices they touch.
+  uint low = 0xffffffffu, high = 0u;
+  uvec2 mask = uvec2(0u);
+  for (uint i = start + FIRST; i < end; i += STRIDE) {
+    uvec2 depths = texelFetch(listed, int(i)).zw;
+    low = min(low, depths.x);
+    high = max(high, depths.y);
+    mask |= mask_between(depths.x >> MASK_SHIFT, depths.y >> MASK_SHIFT);
+  }
+#if CROWDED
+  if (ALONE) {
+    shared_low = 0xffffffffu;
+    shared_high = shared_mask[0] = shared_mask[1] = 0u;
+  }
+  WAIT
+  atomicMin(shared_low, low);
+  atomicMax(shared_high, high);
+  atomicOr(shared_mask[0], mask.x);
+  atomicOr(shared_mask[1], mask.y);
+  WAIT
+  low = shared_low;
+  high = shared_high;
+  mask = uvec2(shared_mask[0], shared_mask[1]);
+#endif
+
+  // A power of two of depths a bucket, the least that needs no more buckets than wanted.
+  uint wanted = min((end - start) * buckets_per_triangle, MOST_BUCKETS);
+  wanted = wanted <= 1u ? 1u : 2u << findMSB(wanted - 1u);
+  uint shift = LEAST_SHIFT;
+  while ((high >> shift) - (low >> shift) >= wanted) ++shift;
+  uint first = low >> shift, buckets = (high >> shift) - first + 1u;
+#if CROWDED
+  if (ALONE) shared_start = atomicAdd(counters.offsets, buckets + 1u);
+  WAIT
+  uint offset = shared_start;
+#else
+  uint offset = atomicAdd(counters.offsets, buckets + 1u);
+#endif
+  if (offset + buckets + 1u > list_sizes.z) return;  // the host makes room and starts again
+
+  for (uint b = FIRST; b <= buckets; b += STRIDE) offsets[offset + b] = 0u;
+  WAIT
+  for (uint i = start + FIRST; i < end; i += STRIDE) {
+    uvec2 range = (texelFetch(listed, int(i)).zw >> shift) - first;
+    for (uint b = range.x; b <= range.y; ++b) atomicAdd(offsets[offset + b], 1u);
+  }
+  WAIT
+  // Each bucket's offset goes to its end; listing counts it down to its beginning.
+  if (ALONE) {
+    uint count = 0u;
+    for (uint b = 0u; b < buckets; ++b) count += offsets[offset + b];
+    uint at = atomicAdd(counters.ids, count);
+    for (uint b = 0u; b < buckets; ++b) {
+      at += offsets[offset + b];
+      offsets[offset + b] = at;
+    }
+    offsets[offset + buckets] = at;
+    nodes[node] = uvec4(mask, offset, shift << NODE_SHIFT | (buckets - 1u) << NODE_BUCKETS |
+                                          first << NODE_FIRST);
+  }
+  WAIT
+  for (uint i = start + FIRST; i < end; i += STRIDE) {
+    uvec4 entry = texelFetch(listed, int(i));
+    uvec2 range = (entry.zw >> shift) - first;
+    for (uint b = range.x; b <= range.y; ++b) {
+      uint place = atomicAdd(offsets[offset + b], 0xffffffffu) - 1u;
+      if (place < list_sizes.w) ids[place] = entry.y;
+    }
+  }
+}
+
+void main() {
+#if CROWDED
+  // The queue is that of large triangles, which have all been rasterised.
+  uint i = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  if (i >= min(counters.crowded, pool_sizes.y)) return;
+  uint node = blocks[i].primitive;
+#else
+  if (invocation() >= node_count()) return;
+  uint node = node_number(invocation());
+#endif
+  uint start = lists[node].start, end = min(lists[node].end, pool_sizes.x);
+#if !CROWDED
+  if (start >= end) return;
+  if (end - start > MOST_ENTRIES) {
+    uint place = atomicAdd(counters.crowded, 1u);
+    if (place < pool_sizes.y) blocks[place].primitive = node;
+    return;
+  }
+#endif
+  sort(node, start, end);
+}
