@@ -137,8 +137,8 @@ void step_cell(inout Traversal at) {
     int shift = int(node.w >> NODE_SHIFT & 31u), last = int(node.w >> NODE_BUCKETS & 511u);
     int first = int(node.w >> NODE_FIRST);
     int from = int(low >> shift) - first, to = int(high >> shift) - first;
-    if (from <= last && to >= 0) {
-      at.entry = texelFetch(offsets, int(node.z) + max(from, 0)).x;
+    if (from <= last + 1 && to >= 0) {
+      at.entry = texelFetch(offsets, int(node.z) + max(from - 1, 0)).x;
       at.entry_end = texelFetch(offsets, int(node.z) + min(to, last) + 1).x;
       COUNT_LIST(uint(index), at.entry_end - at.entry)
     }

@@ -7,12 +7,12 @@
 
 layout(local_size_x = 64) in;
 layout(binding = 1) uniform usamplerBuffer listed;  // the entries: reads are faster this way
-layout(std430, binding = 5) buffer Offsets { uint offsets[]; };
+layout(std430, binding = 5) buffer Offsets { uint offsets[]; };  // zero at first
 layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
 layout(location = 3) uniform uint buckets_per_triangle;
 
 #if CROWDED
-shared uint shared_low, shared_high, shared_start, shared_mask[2];
+shared uint shared_low, shared_high, shared_start, shared_copies, shared_mask[2];
 #define FIRST gl_LocalInvocationIndex
 #define STRIDE 64u
 #define ALONE (gl_LocalInvocationIndex == 0u)
@@ -40,7 +40,7 @@ void sort(uint node, uint start, uint end) {
 #if CROWDED
   if (ALONE) {
     shared_low = 0xffffffffu;
-    shared_high = shared_mask[0] = shared_mask[1] = 0u;
+    shared_high = shared_copies = shared_mask[0] = shared_mask[1] = 0u;
   }
   WAIT
   atomicMin(shared_low, low);
@@ -68,18 +68,22 @@ void sort(uint node, uint start, uint end) {
 #endif
   if (offset + buckets + 1u > list_sizes.z) return;  // the host makes room and starts again
 
-  for (uint b = FIRST; b <= buckets; b += STRIDE) offsets[offset + b] = 0u;
-  WAIT
+  // A triangle stands in every second bucket of those that it touches, and rays begin one bucket
+  // early: they still find it, and where it touches two or three, it is there once or twice.
+  uint copies = 0u;
   for (uint i = start + FIRST; i < end; i += STRIDE) {
     uvec2 range = (texelFetch(listed, int(i)).zw >> shift) - first;
-    for (uint b = range.x; b <= range.y; ++b) atomicAdd(offsets[offset + b], 1u);
+    for (uint b = range.x; b <= range.y; b += 2u) atomicAdd(offsets[offset + b], 1u);
+    copies += (range.y - range.x) / 2u + 1u;
   }
+#if CROWDED
+  atomicAdd(shared_copies, copies);
   WAIT
+  copies = shared_copies;
+#endif
   // Each bucket's offset goes to its end; listing counts it down to its beginning.
   if (ALONE) {
-    uint count = 0u;
-    for (uint b = 0u; b < buckets; ++b) count += offsets[offset + b];
-    uint at = atomicAdd(counters.ids, count);
+    uint at = atomicAdd(counters.ids, copies);
     for (uint b = 0u; b < buckets; ++b) {
       at += offsets[offset + b];
       offsets[offset + b] = at;
@@ -92,7 +96,7 @@ void sort(uint node, uint start, uint end) {
   for (uint i = start + FIRST; i < end; i += STRIDE) {
     uvec4 entry = texelFetch(listed, int(i));
     uvec2 range = (entry.zw >> shift) - first;
-    for (uint b = range.x; b <= range.y; ++b) {
+    for (uint b = range.x; b <= range.y; b += 2u) {
       uint place = atomicAdd(offsets[offset + b], 0xffffffffu) - 1u;
       if (place < list_sizes.w) ids[place] = entry.y;
     }
