@@ -49,7 +49,7 @@ void BuildPools::dispatch(Indirect over) const {
 }
 
 void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense,
-                       uint32_t entry_limit) {
+                       uint32_t entry_limit, int entry_bytes) {
   sizes_.entries = std::max(sizes_.entries, at_least.entries);
   sizes_.blocks = std::max(sizes_.blocks, at_least.blocks);
   sizes_.nodes = std::max(sizes_.nodes, at_least.nodes);
@@ -64,8 +64,8 @@ void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t d
     buffer = gl::Buffer(bytes);
     return true;
   };
-  if (reserve(entries_, int64_t(sizes_.entries) * int64_t(sizeof(shared::CellEntry))))
-    entries_texture_ = gl::Texture(GL_RGBA32UI, entries_);
+  if (reserve(entries_, int64_t(sizes_.entries) * entry_bytes))
+    entries_texture_ = gl::Texture(entry_bytes == 8 ? GL_RG32UI : GL_RGBA32UI, entries_);
   reserve(blocks_, int64_t(sizes_.blocks) * int64_t(sizeof(shared::RasterBlock)));
   reserve(counters_, sizeof(shared::BuildCounters));
   counters_.clear();

@@ -31,8 +31,9 @@ class BuildPools {
   void dispatch(Indirect over) const;
 
   // Sets what a build begins with; a pool never shrinks. `dense` nodes exist anyhow. Rasterisation
-  // stops soon after `entry_limit` entries.
-  void begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense, uint32_t entry_limit);
+  // stops soon after `entry_limit` entries, which have `entry_bytes` (8 or 16) each.
+  void begin(const PoolSizes& at_least, uint32_t triangles, uint32_t dense, uint32_t entry_limit,
+             int entry_bytes = sizeof(shared::CellEntry));
   // Binds pools and sets the uniforms that build.glsl declares, for the program in use.
   void use(const gl::Program& program) const;
   // Writes the arguments of indirect dispatches from the counts so far.
@@ -43,7 +44,7 @@ class BuildPools {
   // Valid after fitted(): there were more entries than the limit, and sizes are as they were.
   bool over_limit() const { return counts_.entries > entry_limit_; }
 
-  // The entries as a buffer texture of RGBA32UI, one texel each.
+  // The entries as a buffer texture of whole numbers, one texel each.
   const gl::Texture& entries() const { return entries_texture_; }
 
   const PoolSizes& sizes() const { return sizes_; }

@@ -111,7 +111,8 @@ void OrthographicTracer::build(const tracing::TriangleList& triangles, gl::Progr
   for (bool fitted = false; !fitted;) {
     place(triangles.bounds(), tiles);
     pools_.begin(sizes, count, uint32_t(tiles * tiles),
-                 chosen && tiles > 1 ? entry_limit(count) : 1u << 30);
+                 chosen && tiles > 1 ? entry_limit(count) : 1u << 30,
+                 sizeof(shared::NodeEntry));
     reserve();
     glBindBufferBase(GL_UNIFORM_BUFFER, tracing::kStructureBlock, view_block_.id());
     run_passes(count, programs, timer);

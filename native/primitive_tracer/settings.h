@@ -12,9 +12,9 @@ struct OrthographicSettings {
   int divisions = 2;
   // Triangles that a part of a divided tile should hold at most.
   int triangles_a_part = 8;
-  // Buckets over depth for each triangle of a node, up to 256: with two, a ray tests little beside
-  // what it passes; more costs memory and gained nothing.
-  int buckets_per_triangle = 2;
+  // Buckets over depth for each triangle of a node, up to 256. Four instead of two save a seventh of
+  // the tests for a third more memory and no time to speak of.
+  int buckets_per_triangle = 4;
 };
 
 }  // namespace panoptes::primitive_tracer

@@ -5,7 +5,7 @@
 
 SHARED_BEGIN
 
-// A triangle crosses a cell: what the lists are made from.
+// A triangle crosses a cell: what lists are made from.
 struct CellEntry {
   uint cell;
   uint primitive;

@@ -5,6 +5,7 @@
 #include "primitive_tracer/orthographic.glsl"
 
 layout(binding = 1) uniform usamplerBuffer nodes;
+layout(std430, binding = 0) writeonly buffer NodeEntries { NodeEntry node_entries[]; };
 layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 
 // Half a cell and a margin for rounding, in cells.
@@ -87,8 +88,8 @@ void list(uint primitive, Placed placed, uint node, vec2 centre, float half_size
                              : clamp(depth - reach, placed.depth_low, placed.depth_high);
   float high = placed.edge_on ? placed.depth_high
                               : clamp(depth + reach, placed.depth_low, placed.depth_high);
-  entries[slot] =
-      CellEntry(node, primitive, depth_code(low - DEPTH_MARGIN), depth_code(high + DEPTH_MARGIN));
+  node_entries[slot] = NodeEntry(
+      primitive, depth_code(low - DEPTH_MARGIN) | depth_code(high + DEPTH_MARGIN) << DEPTH_BITS);
 #endif
 }
 

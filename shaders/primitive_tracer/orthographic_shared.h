@@ -14,8 +14,8 @@ struct OrthographicView {
 SHARED_ASSERT_SIZE(OrthographicView, 48)
 
 // Depths are whole numbers of 2^-DEPTH_BITS of the box; nodes keep a mask with a bit for each 64th.
-const uint DEPTH_BITS = 22u;
-const uint MASK_SHIFT = 16u;
+const uint DEPTH_BITS = 16u;
+const uint MASK_SHIFT = DEPTH_BITS - 6u;
 
 // How far rounding may put a depth off, in units of the box's depth.
 const float DEPTH_MARGIN = 2e-6;
@@ -23,14 +23,13 @@ const float DEPTH_MARGIN = 2e-6;
 // A node of the pyramid, of a tile, or of a part of a tile is a uvec4: its mask in x and y. Those
 // that triangles are listed in have
 //     z   where the offsets of its buckets begin
-//     w   bits 4..8: shift from depths to buckets; bits 9..17: buckets - 1; above: first bucket
+//     w   bits 4..7: shift from depths to buckets; bits 8..15: buckets - 1; above: first bucket
 // and a tile that is divided into 2^k x 2^k parts has z: its first part and w: k.
 const uint NODE_LEVELS = 15u;
 const uint NODE_SHIFT = 4u;
-const uint NODE_BUCKETS = 9u;
-const uint NODE_FIRST = 18u;
+const uint NODE_BUCKETS = 8u;
+const uint NODE_FIRST = 16u;
 const uint MOST_BUCKETS = 256u;
-const uint LEAST_SHIFT = 8u;  // so that the number of the first bucket fits
 
 // The triangles that cross a node, while it is built: first counted, then listed as entries from
 // `start` on.
@@ -39,5 +38,12 @@ struct NodeList {
   uint start;  // before that, triangles whose middle is in the tile
 };
 SHARED_ASSERT_SIZE(NodeList, 8)
+
+// One of them: its depths in the node, the lower in the lower half.
+struct NodeEntry {
+  uint primitive;
+  uint depths;
+};
+SHARED_ASSERT_SIZE(NodeEntry, 8)
 
 SHARED_END

@@ -134,7 +134,7 @@ void step_cell(inout Traversal at) {
   bool leaf = at.level <= 0 && at.level == -at.divisions;
 
   if (hit && leaf) {
-    int shift = int(node.w >> NODE_SHIFT & 31u), last = int(node.w >> NODE_BUCKETS & 511u);
+    int shift = int(node.w >> NODE_SHIFT & 15u), last = int(node.w >> NODE_BUCKETS & 255u);
     int first = int(node.w >> NODE_FIRST);
     int from = int(low >> shift) - first, to = int(high >> shift) - first;
     if (from <= last + 1 && to >= 0) {

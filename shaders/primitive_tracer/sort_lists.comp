@@ -6,7 +6,7 @@
 #include "primitive_tracer/nodes.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 1) uniform usamplerBuffer listed;  // the entries: reads are faster this way
+layout(binding = 1) uniform usamplerBuffer listed;  // as NodeEntry: reads are faster this way
 layout(std430, binding = 5) buffer Offsets { uint offsets[]; };  // zero at first
 layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
 layout(location = 3) uniform uint buckets_per_triangle;
@@ -27,12 +27,14 @@ const uint MOST_ENTRIES = 512u;
 #define WAIT
 #endif
 
+uvec2 depths_of(uint word) { return uvec2(word & 0xffffu, word >> DEPTH_BITS); }
+
 void sort(uint node, uint start, uint end) {
   // The depths of all entries, and which slices they touch.
   uint low = 0xffffffffu, high = 0u;
   uvec2 mask = uvec2(0u);
   for (uint i = start + FIRST; i < end; i += STRIDE) {
-    uvec2 depths = texelFetch(listed, int(i)).zw;
+    uvec2 depths = depths_of(texelFetch(listed, int(i)).y);
     low = min(low, depths.x);
     high = max(high, depths.y);
     mask |= mask_between(depths.x >> MASK_SHIFT, depths.y >> MASK_SHIFT);
@@ -56,7 +58,7 @@ void sort(uint node, uint start, uint end) {
   // A power of two of depths a bucket, the least that needs no more buckets than wanted.
   uint wanted = min((end - start) * buckets_per_triangle, MOST_BUCKETS);
   wanted = wanted <= 1u ? 1u : 2u << findMSB(wanted - 1u);
-  uint shift = LEAST_SHIFT;
+  uint shift = 0u;
   while ((high >> shift) - (low >> shift) >= wanted) ++shift;
   uint first = low >> shift, buckets = (high >> shift) - first + 1u;
 #if CROWDED
@@ -72,7 +74,7 @@ void sort(uint node, uint start, uint end) {
   // early: they still find it, and where it touches two or three, it is there once or twice.
   uint copies = 0u;
   for (uint i = start + FIRST; i < end; i += STRIDE) {
-    uvec2 range = (texelFetch(listed, int(i)).zw >> shift) - first;
+    uvec2 range = (depths_of(texelFetch(listed, int(i)).y) >> shift) - first;
     for (uint b = range.x; b <= range.y; b += 2u) atomicAdd(offsets[offset + b], 1u);
     copies += (range.y - range.x) / 2u + 1u;
   }
@@ -94,11 +96,11 @@ void sort(uint node, uint start, uint end) {
   }
   WAIT
   for (uint i = start + FIRST; i < end; i += STRIDE) {
-    uvec4 entry = texelFetch(listed, int(i));
-    uvec2 range = (entry.zw >> shift) - first;
+    uvec2 entry = texelFetch(listed, int(i)).xy;
+    uvec2 range = (depths_of(entry.y) >> shift) - first;
     for (uint b = range.x; b <= range.y; b += 2u) {
       uint place = atomicAdd(offsets[offset + b], 0xffffffffu) - 1u;
-      if (place < list_sizes.w) ids[place] = entry.y;
+      if (place < list_sizes.w) ids[place] = entry.x;
     }
   }
 }
