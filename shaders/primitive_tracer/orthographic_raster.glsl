@@ -94,7 +94,7 @@ void list(uint primitive, Placed placed, uint node, vec2 centre, float half_size
 }
 
 void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
-  uint tile = uint(cell.y * box.grid.y + cell.x);
+  uint tile = uint(box.grid.w + cell.y * box.grid.y + cell.x);
   uvec4 node = texelFetch(nodes, int(tile));
   uint levels = node.w & NODE_LEVELS;
   if (levels == 0u) {

@@ -9,7 +9,7 @@ SHARED_BEGIN
 struct OrthographicView {
   vec4 low;    // xyz: corner of the box; w: tiles a metre
   vec4 depth;  // x: 1 / depth of the box, 1/metre
-  ivec4 grid;  // x: axis; y: tiles a side, a power of two; z: its logarithm; w: first divided node
+  ivec4 grid;  // x: axis; y: tiles a side, a power of two; z: its logarithm; w: node of the first tile
 };
 SHARED_ASSERT_SIZE(OrthographicView, 48)
 

@@ -105,9 +105,17 @@ Traversal traversal_load(Ray ray, uint word) {
 }
 #endif
 
-// One cell: goes down into it where it holds something at the ray's depths, starts its list where it
-// has one, and goes on to its neighbour otherwise.
-void step_cell(inout Traversal at) {
+// What a ray found in a node that lists triangles.
+struct Found {
+  bool any;
+  uvec2 node;       // its z and w
+  uvec2 depths;     // of the ray in it
+  uint number;
+};
+
+// One cell: goes down into it where it holds something at the ray's depths, or finds its list, and
+// goes on to its neighbour otherwise.
+Found step_cell(inout Traversal at) {
   COUNT_STEP
   // Where the ray leaves the cell. Boundaries are computed from whole numbers, so that errors do not
   // add up.
@@ -120,36 +128,26 @@ void step_cell(inout Traversal at) {
   uint low = depth_code(min(at.depth, depth_next) - DEPTH_MARGIN);
   uint high = depth_code(max(at.depth, depth_next) + DEPTH_MARGIN);
 
-  int parts = max(-at.level, 0), level = max(at.level, 0), side = box.grid.y >> level;
-  int within = (1 << parts) - 1;
+  int parts = max(-at.level, 0), side = box.grid.y >> max(at.level, 0), within = (1 << parts) - 1;
   int index = at.level >= 0
-                  ? level_start(level) + side * at.cell.y + at.cell.x
+                  ? level_start(side) + side * at.cell.y + at.cell.x
                   : at.first_part + ((at.cell.y & within) << parts) + (at.cell.x & within);
   uvec4 node = texelFetch(nodes, index);
-  bool hit = any(notEqual(node.xy & mask_between(low >> MASK_SHIFT, high >> MASK_SHIFT), uvec2(0u)));
+  uvec2 met = node.xy & mask_between(low >> MASK_SHIFT, high >> MASK_SHIFT);
+  bool hit = (met.x | met.y) != 0u;
   if (at.level == 0) {
     at.divisions = int(node.w & NODE_LEVELS);
     at.first_part = int(node.z);
   }
   bool leaf = at.level <= 0 && at.level == -at.divisions;
-
-  if (hit && leaf) {
-    int shift = int(node.w >> NODE_SHIFT & 15u), last = int(node.w >> NODE_BUCKETS & 255u);
-    int first = int(node.w >> NODE_FIRST);
-    int from = int(low >> shift) - first, to = int(high >> shift) - first;
-    if (from <= last + 1 && to >= 0) {
-      at.entry = texelFetch(offsets, int(node.z) + max(from - 1, 0)).x;
-      at.entry_end = texelFetch(offsets, int(node.z) + min(to, last) + 1).x;
-      COUNT_LIST(uint(index), at.entry_end - at.entry)
-    }
-  }
+  Found found = Found(hit && leaf, node.zw, uvec2(low, high), uint(index));
 
   // Down to the child that holds the ray at s, several levels at once.
   bool down = hit && !leaf;
   int levels_down = at.level > 0 ? min(STRIDE, at.level) : at.divisions;
   ivec2 corner = at.cell << levels_down;
-  ivec2 child = clamp(ivec2(floor((at.start.xy + at.s * at.direction.xy) * power_of_two(levels_down - at.level))),
-                      corner, corner + (1 << levels_down) - 1);
+  vec2 place = (at.start.xy + at.s * at.direction.xy) * power_of_two(levels_down - at.level);
+  ivec2 child = clamp(ivec2(floor(place)), corner, corner + (1 << levels_down) - 1);
   // On to the neighbour, and up where that has another parent.
   ivec2 neighbour = at.cell + (through_x ? ivec2(at.turn.x, 0) : ivec2(0, at.turn.y));
   int levels_up = at.level >= 0 ? min(STRIDE, box.grid.z - at.level) : parts;
@@ -161,14 +159,29 @@ void step_cell(inout Traversal at) {
   at.level = down ? at.level - levels_down : at.level + levels_up;
   at.s = down ? at.s : s_next;
   at.depth = down ? at.depth : depth_next;
+  return found;
+}
+
+// The run of triangles that the ray passes in a node. It begins one bucket early, since a triangle
+// stands in every second bucket only (sort_lists.comp).
+void open_list(Found found, inout Traversal at) {
+  ivec2 buckets = ivec2(found.depths >> (found.node.y >> NODE_SHIFT & 15u)) -
+                  int(found.node.y >> NODE_FIRST);
+  int last = int(found.node.y >> NODE_BUCKETS & 255u);
+  if (!found.any || buckets.x > last + 1 || buckets.y < 0) return;
+  at.entry = texelFetch(offsets, int(found.node.x) + max(buckets.x - 1, 0)).x;
+  at.entry_end = texelFetch(offsets, int(found.node.x) + min(buckets.y, last) + 1).x;
+  COUNT_LIST(found.number, at.entry_end - at.entry)
 }
 
 bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
   while ((at.alive || at.entry < at.entry_end) && budget > 0) {
-    while (at.alive && at.entry >= at.entry_end && budget > 0) {
-      step_cell(at);
+    Found found = Found(false, uvec2(0u), uvec2(0u), 0u);
+    while (at.alive && !found.any && at.entry >= at.entry_end && budget > 0) {
+      found = step_cell(at);
       --budget;
     }
+    open_list(found, at);
     while (at.entry < at.entry_end && budget > 0) {
       intersect(ray, texelFetch(ids, int(at.entry)).x, hit);
       ++at.entry;
