@@ -55,7 +55,8 @@ void intersect(Ray ray, uint primitive, inout TracedHit hit) {
   int i = int(primitive) * 3;
   vec4 texel0 = texelFetch(triangles, i), texel1 = texelFetch(triangles, i + 1),
        texel2 = texelFetch(triangles, i + 2);
-  vec3 a = axis_last(texel0.xyz - ray.origin, ray.axis);
+  vec3 from_origin = texel0.xyz - ray.origin;
+  vec3 a = axis_last(from_origin, ray.axis);
   vec3 b = axis_last(texel1.xyz - ray.origin, ray.axis);
   vec3 c = axis_last(texel2.xyz - ray.origin, ray.axis);
   precise vec2 a2 = a.xy - ray.shear.xy * a.z;
@@ -66,11 +67,17 @@ void intersect(Ray ray, uint primitive, inout TracedHit hit) {
   precise float w = b2.x * a2.y - b2.y * a2.x;
   float determinant = u + v + w;
   float inverse = 1.0 / determinant;
-  float t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
+  // Where the ray meets the plane, which for walls and floors along the axes is exact near the origin
+  // too; not beyond the corners, since the plane of a sliver is uncertain.
+  vec3 normal = cross(texel1.xyz - texel0.xyz, texel2.xyz - texel0.xyz);
+  vec3 along = vec3(a.z, b.z, c.z) * ray.shear.z;
+  float nearest = min(along.x, min(along.y, along.z)), farthest = max(along.x, max(along.y, along.z));
+  float facing = dot(ray.direction, normal);
+  float t = clamp(dot(from_origin, normal) / facing, nearest, farthest);
   bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
   bool ahead = t > ray.t_min || (t == ray.t_min && primitive > ray.after);
   bool closer = t < hit.t || (t == hit.t && primitive < hit.primitive);
   bool seen = (floatBitsToUint(texel2.w) & ray.seen_by) != 0u;
-  if (inside && determinant != 0.0 && ahead && closer && seen)
+  if (inside && determinant != 0.0 && facing != 0.0 && ahead && closer && seen)
     hit = TracedHit(t, primitive, v * inverse, w * inverse);
 }
