@@ -4,6 +4,8 @@
 // difference of two products of coordinates that neighbours share bit by bit. Rounding is monotonic,
 // so the difference has the right sign or is zero, and zero counts as inside: no ray slips between
 // triangles that share vertices. That needs each product rounded by itself: `precise`.
+// Beside a triangle smaller than the rounding of its distance from the ray all differences may come
+// out as zero, so the ray must lie within the triangle's bounds there too.
 #include "tracing/triangles.glsl"
 
 struct Ray {
@@ -75,9 +77,11 @@ void intersect(Ray ray, uint primitive, inout TracedHit hit) {
   float facing = dot(ray.direction, normal);
   float t = clamp(dot(from_origin, normal) / facing, nearest, farthest);
   bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
+  vec2 low = min(a2, min(b2, c2)), high = max(a2, max(b2, c2));
+  bool around = max(low.x, low.y) <= 0.0 && min(high.x, high.y) >= 0.0;
   bool ahead = t > ray.t_min || (t == ray.t_min && primitive > ray.after);
   bool closer = t < hit.t || (t == hit.t && primitive < hit.primitive);
   bool seen = (floatBitsToUint(texel2.w) & ray.seen_by) != 0u;
-  if (inside && determinant != 0.0 && facing != 0.0 && ahead && closer && seen)
+  if (inside && around && determinant != 0.0 && facing != 0.0 && ahead && closer && seen)
     hit = TracedHit(t, primitive, v * inverse, w * inverse);
 }
