@@ -67,19 +67,19 @@ OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, con
 void OrthographicTracer::place(const scene::Bounds& bounds, int tiles) {
   // A little more than the scene, so that nothing lies on the border, and never flat.
   glm::vec3 low(0), size(1);
+  float uncertain = 5e-7f;  // metres, of coordinates as large as these
   if (!bounds.empty()) {
     size = bounds.high - bounds.low;
-    const float largest = std::max({size.x, size.y, size.z});
-    const glm::vec3 magnitude = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
-    const float least = std::max({largest * 1e-6f, 1e-6f * std::max({magnitude.x, magnitude.y, magnitude.z}), 1e-30f});
-    const glm::vec3 margin = size * 1e-4f + least;
+    const glm::vec3 largest = glm::max(size, glm::max(glm::abs(bounds.low), glm::abs(bounds.high)));
+    uncertain *= std::max({largest.x, largest.y, largest.z, 1e-30f});
+    const glm::vec3 margin = size * 1e-4f + 10.0f * uncertain;
     low = bounds.low - margin;
     size += 2.0f * margin;
   }
   const int axis = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
   const float across = std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]);
   view_.low = glm::vec4(low, float(tiles) / across);
-  view_.depth = glm::vec4(1.0f / size[axis], 0, 0, 0);
+  view_.depth = glm::vec4(1.0f / size[axis], std::max(2e-6f, uncertain / size[axis]), uncertain, 0);
   const int levels_above = (tiles * tiles - 1) / 3;
   view_.grid = {axis, tiles, std::countr_zero(unsigned(tiles)), levels_above};
   if (!view_block_) view_block_ = gl::Buffer(sizeof view_);

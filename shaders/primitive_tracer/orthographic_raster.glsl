@@ -89,7 +89,7 @@ void list(uint primitive, Placed placed, uint node, vec2 centre, float half_size
   float high = placed.edge_on ? placed.depth_high
                               : clamp(depth + reach, placed.depth_low, placed.depth_high);
   node_entries[slot] = NodeEntry(
-      primitive, depth_code(low - DEPTH_MARGIN) | depth_code(high + DEPTH_MARGIN) << DEPTH_BITS);
+      primitive, depth_code(low - box.depth.y) | depth_code(high + box.depth.y) << DEPTH_BITS);
 #endif
 }
 

@@ -23,7 +23,7 @@ struct Traversal {
   int level;         // of the pyramid; -k in the parts of a tile that is divided k times
   ivec2 cell;
   int divisions, first_part;  // of the tile
-  float s, s_end;
+  float s, s_end, slack;     // slack: how far rounding may put a hit off
   float depth;       // at s
   bool alive;
   uint entry, entry_end;  // of the list that is being tested
@@ -32,7 +32,9 @@ struct Traversal {
 float power_of_two(int exponent) { return intBitsToFloat((exponent + 127) << 23); }
 
 // How far s may go once something was met at t; rounding must not end the search too early.
-float end_of(float t, float t_start) { return t - t_start + 1e-6 * max(abs(t), abs(t_start)); }
+float end_of(float t, Traversal at) {
+  return t - at.t_start + 2e-6 * max(abs(t), abs(at.t_start)) + at.slack;
+}
 
 Traversal traversal_begin(Ray ray) {
   Traversal at;
@@ -52,8 +54,10 @@ Traversal traversal_begin(Ray ray) {
                         origin.z < -margin.z || origin.z > 1.0 + margin.z);
   float t0 = max(ray.t_min, max(enter.x, max(enter.y, enter.z)));
   float t1 = min(ray.t_max, min(leave.x, min(leave.y, leave.z)));
-  t0 = max(ray.t_min, t0 - 1e-6 * abs(t0));
-  t1 += 1e-6 * abs(t1);
+  vec3 size = abs(ray.direction);
+  at.slack = box.depth.z / max(size.x, max(size.y, size.z));
+  t0 -= 2e-6 * abs(t0) + at.slack;
+  t1 += 2e-6 * abs(t1) + at.slack;
   at.alive = t0 <= t1 && !(still.x && outside.x) && !(still.y && outside.y) && !(still.z && outside.z);
 
   at.t_start = t0;
@@ -65,7 +69,7 @@ Traversal traversal_begin(Ray ray) {
   at.turn = ivec2(direction.x >= 0.0 ? 1 : -1, direction.y >= 0.0 ? 1 : -1);
 
   at.s = 0.0;
-  at.s_end = end_of(t1, t0);
+  at.s_end = t1 - t0;
   at.depth = at.start.z;
   at.level = min(START_LEVEL, box.grid.z);
   at.cell = clamp(ivec2(floor(at.start.xy * power_of_two(-at.level))), ivec2(0),
@@ -125,8 +129,8 @@ Found step_cell(inout Traversal at) {
   bool through_x = to_boundary.x <= to_boundary.y;
   float s_next = max(min(to_boundary.x, to_boundary.y), at.s);
   float depth_next = at.start.z + min(s_next, at.s_end) * at.direction.z;
-  uint low = depth_code(min(at.depth, depth_next) - DEPTH_MARGIN);
-  uint high = depth_code(max(at.depth, depth_next) + DEPTH_MARGIN);
+  uint low = depth_code(min(at.depth, depth_next) - box.depth.y);
+  uint high = depth_code(max(at.depth, depth_next) + box.depth.y);
 
   int parts = max(-at.level, 0), side = box.grid.y >> max(at.level, 0), within = (1 << parts) - 1;
   int index = at.level >= 0
@@ -189,7 +193,7 @@ bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
 #if ANY_HIT
       if (hit.primitive != NO_PRIMITIVE) return true;
 #endif
-      at.s_end = min(at.s_end, end_of(hit.t, at.t_start));
+      at.s_end = min(at.s_end, end_of(hit.t, at));
       at.alive = at.alive && at.s <= at.s_end;
     }
   }

@@ -1,6 +1,7 @@
 #include "rays/tracers.h"
 
 #include "base/error.h"
+#include "primitive_tracer/orthographic_tracer.h"
 #include "rays/brute_force.h"
 
 namespace panoptes::test {
@@ -15,7 +16,10 @@ std::unique_ptr<tracing::Tracer> make(const gl::DeviceInfo&) {
 }  // namespace
 
 const std::vector<TracerEntry>& tracers() {
-  static const std::vector<TracerEntry> list = {{"brute force", make<BruteForceTracer>, true}};
+  static const std::vector<TracerEntry> list = {
+      {"brute force", make<BruteForceTracer>, true},
+      {"orthographic", make<primitive_tracer::OrthographicTracer>},
+  };
   return list;
 }
 
