@@ -13,8 +13,8 @@ vec3 vector_to_tiles(vec3 v) {
 }
 
 uint depth_code(float depth) {
-  // The largest float below 1 would round up.
-  return uint(clamp(depth, 0.0, 0.999999) * float(1u << DEPTH_BITS));
+  // Clamped as a whole number: comparisons of floats mind NaN, which takes longer.
+  return uint(clamp(int(depth * float(1u << DEPTH_BITS)), 0, int(1u << DEPTH_BITS) - 1));
 }
 
 // Bits low .. high (0 .. 63) of the two words.

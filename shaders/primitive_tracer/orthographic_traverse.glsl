@@ -127,10 +127,12 @@ Found step_cell(inout Traversal at) {
   vec2 boundary = (vec2(at.cell) + at.far_side) * size;
   vec2 to_boundary = (boundary - at.start.xy) * at.inverse.xy;
   bool through_x = to_boundary.x <= to_boundary.y;
-  float s_next = max(min(to_boundary.x, to_boundary.y), at.s);
-  float depth_next = at.start.z + min(s_next, at.s_end) * at.direction.z;
-  uint low = depth_code(min(at.depth, depth_next) - box.depth.y);
-  uint high = depth_code(max(at.depth, depth_next) + box.depth.y);
+  float s_out = through_x ? to_boundary.x : to_boundary.y;
+  float s_next = s_out > at.s ? s_out : at.s;
+  float depth_next = at.start.z + (s_next < at.s_end ? s_next : at.s_end) * at.direction.z;
+  bool rising = depth_next > at.depth;
+  uint low = depth_code((rising ? at.depth : depth_next) - box.depth.y);
+  uint high = depth_code((rising ? depth_next : at.depth) + box.depth.y);
 
   int parts = max(-at.level, 0), side = box.grid.y >> max(at.level, 0), within = (1 << parts) - 1;
   int index = at.level >= 0
@@ -193,7 +195,8 @@ bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
 #if ANY_HIT
       if (hit.primitive != NO_PRIMITIVE) return true;
 #endif
-      at.s_end = min(at.s_end, end_of(hit.t, at));
+      float s_hit = end_of(hit.t, at);
+      at.s_end = s_hit < at.s_end ? s_hit : at.s_end;
       at.alive = at.alive && at.s <= at.s_end;
     }
   }
