@@ -9,15 +9,22 @@ namespace panoptes::primitive_tracer {
 
 namespace {
 
-// Numbers of entries are 32 bits; more than this would not be addressed by any driver either.
-constexpr uint64_t kMost = 1u << 30;
+// What a buffer texture over a pool may address, and what 32-bit counts leave room for.
+uint64_t most_elements() {
+  GLint texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  return std::min<uint64_t>(uint64_t(texels), 1u << 30);
+}
 
 // Makes room for `count` and a quarter more, so that geometry which moves seldom grows the pool.
 void raise(uint32_t& size, uint64_t count, const char* what) {
   if (count <= size) return;
-  if (count > kMost)
-    fail("the structure for ray tracing would need {} {}: hide or simplify objects", count, what);
-  size = uint32_t(std::min(count + count / 4, kMost));
+  const uint64_t most = most_elements();
+  if (count > most)
+    fail("the structure for ray tracing would need {} {}, and this graphics driver holds {}: hide or "
+         "simplify objects",
+         count, what, most);
+  size = uint32_t(std::min(count + count / 4, most));
 }
 
 }  // namespace

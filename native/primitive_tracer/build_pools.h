@@ -41,8 +41,11 @@ class BuildPools {
   // Reads the counts. False when something did not fit: sizes have been raised then, and the build
   // must start again.
   bool fitted();
-  // Valid after fitted(): there were more entries than the limit, and sizes are as they were.
-  bool over_limit() const { return counts_.entries > entry_limit_; }
+  // Valid after fitted(): there were more entries than the limit, or as many blocks as would surely
+  // have given more (build.glsl), and sizes are as they were.
+  bool over_limit() const {
+    return counts_.entries > entry_limit_ || counts_.blocks > entry_limit_ / 16;
+  }
 
   // The entries as a buffer texture of whole numbers, one texel each.
   const gl::Texture& entries() const { return entries_texture_; }

@@ -67,21 +67,21 @@ OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, con
 void OrthographicTracer::place(const scene::Bounds& bounds, int tiles) {
   // A little more than the scene, so that nothing lies on the border, and never flat.
   glm::vec3 low(0), size(1);
+  float uncertain = 5e-7f;  // metres, of coordinates as large as these
   if (!bounds.empty()) {
     size = bounds.high - bounds.low;
-    const float largest = std::max({size.x, size.y, size.z});
-    const glm::vec3 magnitude = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
-    const float least = std::max({largest * 1e-6f, 1e-6f * std::max({magnitude.x, magnitude.y, magnitude.z}), 1e-30f});
-    const glm::vec3 margin = size * 1e-4f + least;
+    const glm::vec3 largest = glm::max(size, glm::max(glm::abs(bounds.low), glm::abs(bounds.high)));
+    uncertain *= std::max({largest.x, largest.y, largest.z, 1e-30f});
+    const glm::vec3 margin = size * 1e-4f + 10.0f * uncertain;
     low = bounds.low - margin;
     size += 2.0f * margin;
   }
   const int axis = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
   const float across = std::max(size[(axis + 1) % 3], size[(axis + 2) % 3]);
   view_.low = glm::vec4(low, float(tiles) / across);
-  view_.depth = glm::vec4(1.0f / size[axis], 0, 0, 0);
-  const int dense = (4 * tiles * tiles - 1) / 3;
-  view_.grid = {axis, tiles, std::countr_zero(unsigned(tiles)), dense};
+  view_.depth = glm::vec4(1.0f / size[axis], std::max(2e-6f, uncertain / size[axis]), uncertain, 0);
+  const int levels_above = (tiles * tiles - 1) / 3;
+  view_.grid = {axis, tiles, std::countr_zero(unsigned(tiles)), levels_above};
   if (!view_block_) view_block_ = gl::Buffer(sizeof view_);
   view_block_.write(0, sizeof view_, &view_);
 }
@@ -94,7 +94,7 @@ void OrthographicTracer::reserve() {
     return true;
   };
   const PoolSizes& sizes = pools_.sizes();
-  const int64_t nodes = int64_t(view_.grid.w) + sizes.nodes;
+  const int64_t nodes = int64_t(view_.grid.w) + view_.grid.y * view_.grid.y + sizes.nodes;
   if (grow(nodes_, nodes * 16)) node_texture_ = gl::Texture(GL_RGBA32UI, nodes_);
   grow(lists_, nodes * int64_t(sizeof(shared::NodeList)));
   if (grow(offsets_, int64_t(sizes.offsets) * 4)) offset_texture_ = gl::Texture(GL_R32UI, offsets_);
@@ -140,8 +140,9 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
   {
     gl::PassScope scope(timer, "structure_divide");
     const uint32_t zero = 0;
-    glClearNamedBufferSubData(lists_.id(), GL_R32UI, 0, tiles * sizeof(shared::NodeList),
-                              GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    glClearNamedBufferSubData(lists_.id(), GL_R32UI, view_.grid.w * int64_t(sizeof(shared::NodeList)),
+                              tiles * sizeof(shared::NodeList), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                              &zero);
     pools_.use(programs.get(density()));
     BuildPools::dispatch(triangles);
     pools_.use(programs.get(divide()));
@@ -178,9 +179,9 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
   pools_.use(programs.get(gather()));
   BuildPools::dispatch(tiles);
   pools_.use(programs.get(pyramid()));
-  for (int level = 1; level <= view_.grid.z; ++level) {
-    glUniform1i(3, level);
-    BuildPools::dispatch(tiles >> (2 * level));
+  for (int side = view_.grid.y / 2; side > 0; side /= 2) {
+    glUniform1i(3, side);
+    BuildPools::dispatch(uint32_t(side * side));
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
@@ -199,7 +200,7 @@ void OrthographicTracer::bind() const {
 
 int64_t OrthographicTracer::bytes() const {
   const shared::BuildCounters& counts = pools_.counts();
-  return 16 * (int64_t(view_.grid.w) + counts.nodes) + 4 * int64_t(counts.offsets) +
+  return 16 * (int64_t(view_.grid.w) + view_.grid.y * view_.grid.y + counts.nodes) + 4 * int64_t(counts.offsets) +
          4 * int64_t(counts.ids);
 }
 

@@ -12,5 +12,5 @@ void main() {
   if ((corners.flags & TRIANGLE_SEEN_BY) == 0u) return;
   vec3 middle = to_tiles(corners.p0 + ((corners.p1 - corners.p0) + (corners.p2 - corners.p0)) / 3.0);
   ivec2 tile = clamp(ivec2(middle.xy), ivec2(0), ivec2(box.grid.y - 1));
-  atomicAdd(lists[tile.y * box.grid.y + tile.x].start, 1u);
+  atomicAdd(lists[box.grid.w + tile.y * box.grid.y + tile.x].start, 1u);
 }

@@ -8,8 +8,8 @@ layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 layout(location = 3) uniform uvec2 division;  // triangles that a part should hold; most levels
 
 void main() {
-  uint tile = invocation();
-  if (tile >= list_sizes.x) return;
+  if (invocation() >= list_sizes.x) return;
+  uint tile = uint(box.grid.w) + invocation();
   uint count = lists[tile].start, levels = 0u;
   while (levels < division.y && count > division.x << (2u * levels)) ++levels;
 
@@ -20,7 +20,7 @@ void main() {
     if (place + parts > list_sizes.y) {
       levels = 0u;  // the host makes room and starts again
     } else {
-      first = uint(box.grid.w) + place;
+      first = uint(box.grid.w) + list_sizes.x + place;
       for (uint i = 0u; i < parts; ++i) {
         nodes[first + i] = uvec4(0u);
         lists[first + i] = NodeList(0u, 0u);

@@ -4,8 +4,8 @@
 layout(local_size_x = 64) in;
 
 void main() {
-  uint tile = invocation();
-  if (tile >= list_sizes.x) return;
+  if (invocation() >= list_sizes.x) return;
+  uint tile = node_number(invocation());
   uvec4 node = nodes[tile];
   uint levels = node.w & NODE_LEVELS;
   if (levels == 0u) return;

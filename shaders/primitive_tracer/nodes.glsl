@@ -7,4 +7,4 @@ layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 
 uint node_count() { return list_sizes.x + min(counters.nodes, list_sizes.y); }
 
-uint node_number(uint i) { return i < list_sizes.x ? i : uint(box.grid.w) + i - list_sizes.x; }
+uint node_number(uint i) { return uint(box.grid.w) + i; }

@@ -13,8 +13,8 @@ vec3 vector_to_tiles(vec3 v) {
 }
 
 uint depth_code(float depth) {
-  // The largest float below 1 would round up.
-  return uint(clamp(depth, 0.0, 0.999999) * float(1u << DEPTH_BITS));
+  // Clamped as a whole number: comparisons of floats mind NaN, which takes longer.
+  return uint(clamp(int(depth * float(1u << DEPTH_BITS)), 0, int(1u << DEPTH_BITS) - 1));
 }
 
 // Bits low .. high (0 .. 63) of the two words.
@@ -25,8 +25,6 @@ uvec2 mask_between(uint low, uint high) {
   return uvec2(a, b);
 }
 
-// First node of a level of the pyramid; level 0 are the tiles.
-int level_start(int level) {
-  int side = box.grid.y, narrow = side >> level;
-  return (4 * (side * side - narrow * narrow)) / 3;
-}
+// First node of the level of the pyramid that is `side` nodes wide, a power of two. The widest, last,
+// are the tiles, and the parts of divided tiles follow: (4^n - 1) / 3 nodes are in n levels.
+int level_start(int side) { return 0x55555555 & (side * side - 1); }

@@ -89,12 +89,12 @@ void list(uint primitive, Placed placed, uint node, vec2 centre, float half_size
   float high = placed.edge_on ? placed.depth_high
                               : clamp(depth + reach, placed.depth_low, placed.depth_high);
   node_entries[slot] = NodeEntry(
-      primitive, depth_code(low - DEPTH_MARGIN) | depth_code(high + DEPTH_MARGIN) << DEPTH_BITS);
+      primitive, depth_code(low - box.depth.y) | depth_code(high + box.depth.y) << DEPTH_BITS);
 #endif
 }
 
 void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
-  uint tile = uint(cell.y * box.grid.y + cell.x);
+  uint tile = uint(box.grid.w + cell.y * box.grid.y + cell.x);
   uvec4 node = texelFetch(nodes, int(tile));
   uint levels = node.w & NODE_LEVELS;
   if (levels == 0u) {

@@ -8,17 +8,15 @@ SHARED_BEGIN
 
 struct OrthographicView {
   vec4 low;    // xyz: corner of the box; w: tiles a metre
-  vec4 depth;  // x: 1 / depth of the box, 1/metre
-  ivec4 grid;  // x: axis; y: tiles a side, a power of two; z: its logarithm; w: first divided node
+  vec4 depth;  // x: 1 / depth of the box, 1/metre; y: how far rounding may put a depth off, in
+               // depths of the box; z: the same for a place on a ray, metres
+  ivec4 grid;  // x: axis; y: tiles a side, a power of two; z: its logarithm; w: node of the first tile
 };
 SHARED_ASSERT_SIZE(OrthographicView, 48)
 
 // Depths are whole numbers of 2^-DEPTH_BITS of the box; nodes keep a mask with a bit for each 64th.
 const uint DEPTH_BITS = 16u;
 const uint MASK_SHIFT = DEPTH_BITS - 6u;
-
-// How far rounding may put a depth off, in units of the box's depth.
-const float DEPTH_MARGIN = 2e-6;
 
 // A node of the pyramid, of a tile, or of a part of a tile is a uvec4: its mask in x and y. Those
 // that triangles are listed in have

@@ -23,7 +23,7 @@ struct Traversal {
   int level;         // of the pyramid; -k in the parts of a tile that is divided k times
   ivec2 cell;
   int divisions, first_part;  // of the tile
-  float s, s_end;
+  float s, s_end, slack;     // slack: how far rounding may put a hit off
   float depth;       // at s
   bool alive;
   uint entry, entry_end;  // of the list that is being tested
@@ -32,7 +32,9 @@ struct Traversal {
 float power_of_two(int exponent) { return intBitsToFloat((exponent + 127) << 23); }
 
 // How far s may go once something was met at t; rounding must not end the search too early.
-float end_of(float t, float t_start) { return t - t_start + 1e-6 * max(abs(t), abs(t_start)); }
+float end_of(float t, Traversal at) {
+  return t - at.t_start + 2e-6 * max(abs(t), abs(at.t_start)) + at.slack;
+}
 
 Traversal traversal_begin(Ray ray) {
   Traversal at;
@@ -52,8 +54,10 @@ Traversal traversal_begin(Ray ray) {
                         origin.z < -margin.z || origin.z > 1.0 + margin.z);
   float t0 = max(ray.t_min, max(enter.x, max(enter.y, enter.z)));
   float t1 = min(ray.t_max, min(leave.x, min(leave.y, leave.z)));
-  t0 = max(ray.t_min, t0 - 1e-6 * abs(t0));
-  t1 += 1e-6 * abs(t1);
+  vec3 size = abs(ray.direction);
+  at.slack = box.depth.z / max(size.x, max(size.y, size.z));
+  t0 -= 2e-6 * abs(t0) + at.slack;
+  t1 += 2e-6 * abs(t1) + at.slack;
   at.alive = t0 <= t1 && !(still.x && outside.x) && !(still.y && outside.y) && !(still.z && outside.z);
 
   at.t_start = t0;
@@ -65,7 +69,7 @@ Traversal traversal_begin(Ray ray) {
   at.turn = ivec2(direction.x >= 0.0 ? 1 : -1, direction.y >= 0.0 ? 1 : -1);
 
   at.s = 0.0;
-  at.s_end = end_of(t1, t0);
+  at.s_end = t1 - t0;
   at.depth = at.start.z;
   at.level = min(START_LEVEL, box.grid.z);
   at.cell = clamp(ivec2(floor(at.start.xy * power_of_two(-at.level))), ivec2(0),
@@ -105,9 +109,17 @@ Traversal traversal_load(Ray ray, uint word) {
 }
 #endif
 
-// One cell: goes down into it where it holds something at the ray's depths, starts its list where it
-// has one, and goes on to its neighbour otherwise.
-void step_cell(inout Traversal at) {
+// What a ray found in a node that lists triangles.
+struct Found {
+  bool any;
+  uvec2 node;       // its z and w
+  uvec2 depths;     // of the ray in it
+  uint number;
+};
+
+// One cell: goes down into it where it holds something at the ray's depths, or finds its list, and
+// goes on to its neighbour otherwise.
+Found step_cell(inout Traversal at) {
   COUNT_STEP
   // Where the ray leaves the cell. Boundaries are computed from whole numbers, so that errors do not
   // add up.
@@ -115,41 +127,33 @@ void step_cell(inout Traversal at) {
   vec2 boundary = (vec2(at.cell) + at.far_side) * size;
   vec2 to_boundary = (boundary - at.start.xy) * at.inverse.xy;
   bool through_x = to_boundary.x <= to_boundary.y;
-  float s_next = max(min(to_boundary.x, to_boundary.y), at.s);
-  float depth_next = at.start.z + min(s_next, at.s_end) * at.direction.z;
-  uint low = depth_code(min(at.depth, depth_next) - DEPTH_MARGIN);
-  uint high = depth_code(max(at.depth, depth_next) + DEPTH_MARGIN);
+  float s_out = through_x ? to_boundary.x : to_boundary.y;
+  float s_next = s_out > at.s ? s_out : at.s;
+  float depth_next = at.start.z + (s_next < at.s_end ? s_next : at.s_end) * at.direction.z;
+  bool rising = depth_next > at.depth;
+  uint low = depth_code((rising ? at.depth : depth_next) - box.depth.y);
+  uint high = depth_code((rising ? depth_next : at.depth) + box.depth.y);
 
-  int parts = max(-at.level, 0), level = max(at.level, 0), side = box.grid.y >> level;
-  int within = (1 << parts) - 1;
+  int parts = max(-at.level, 0), side = box.grid.y >> max(at.level, 0), within = (1 << parts) - 1;
   int index = at.level >= 0
-                  ? level_start(level) + side * at.cell.y + at.cell.x
+                  ? level_start(side) + side * at.cell.y + at.cell.x
                   : at.first_part + ((at.cell.y & within) << parts) + (at.cell.x & within);
   uvec4 node = texelFetch(nodes, index);
-  bool hit = any(notEqual(node.xy & mask_between(low >> MASK_SHIFT, high >> MASK_SHIFT), uvec2(0u)));
+  uvec2 met = node.xy & mask_between(low >> MASK_SHIFT, high >> MASK_SHIFT);
+  bool hit = (met.x | met.y) != 0u;
   if (at.level == 0) {
     at.divisions = int(node.w & NODE_LEVELS);
     at.first_part = int(node.z);
   }
   bool leaf = at.level <= 0 && at.level == -at.divisions;
-
-  if (hit && leaf) {
-    int shift = int(node.w >> NODE_SHIFT & 15u), last = int(node.w >> NODE_BUCKETS & 255u);
-    int first = int(node.w >> NODE_FIRST);
-    int from = int(low >> shift) - first, to = int(high >> shift) - first;
-    if (from <= last + 1 && to >= 0) {
-      at.entry = texelFetch(offsets, int(node.z) + max(from - 1, 0)).x;
-      at.entry_end = texelFetch(offsets, int(node.z) + min(to, last) + 1).x;
-      COUNT_LIST(uint(index), at.entry_end - at.entry)
-    }
-  }
+  Found found = Found(hit && leaf, node.zw, uvec2(low, high), uint(index));
 
   // Down to the child that holds the ray at s, several levels at once.
   bool down = hit && !leaf;
   int levels_down = at.level > 0 ? min(STRIDE, at.level) : at.divisions;
   ivec2 corner = at.cell << levels_down;
-  ivec2 child = clamp(ivec2(floor((at.start.xy + at.s * at.direction.xy) * power_of_two(levels_down - at.level))),
-                      corner, corner + (1 << levels_down) - 1);
+  vec2 place = (at.start.xy + at.s * at.direction.xy) * power_of_two(levels_down - at.level);
+  ivec2 child = clamp(ivec2(floor(place)), corner, corner + (1 << levels_down) - 1);
   // On to the neighbour, and up where that has another parent.
   ivec2 neighbour = at.cell + (through_x ? ivec2(at.turn.x, 0) : ivec2(0, at.turn.y));
   int levels_up = at.level >= 0 ? min(STRIDE, box.grid.z - at.level) : parts;
@@ -161,14 +165,29 @@ void step_cell(inout Traversal at) {
   at.level = down ? at.level - levels_down : at.level + levels_up;
   at.s = down ? at.s : s_next;
   at.depth = down ? at.depth : depth_next;
+  return found;
+}
+
+// The run of triangles that the ray passes in a node. It begins one bucket early, since a triangle
+// stands in every second bucket only (sort_lists.comp).
+void open_list(Found found, inout Traversal at) {
+  ivec2 buckets = ivec2(found.depths >> (found.node.y >> NODE_SHIFT & 15u)) -
+                  int(found.node.y >> NODE_FIRST);
+  int last = int(found.node.y >> NODE_BUCKETS & 255u);
+  if (!found.any || buckets.x > last + 1 || buckets.y < 0) return;
+  at.entry = texelFetch(offsets, int(found.node.x) + max(buckets.x - 1, 0)).x;
+  at.entry_end = texelFetch(offsets, int(found.node.x) + min(buckets.y, last) + 1).x;
+  COUNT_LIST(found.number, at.entry_end - at.entry)
 }
 
 bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
   while ((at.alive || at.entry < at.entry_end) && budget > 0) {
-    while (at.alive && at.entry >= at.entry_end && budget > 0) {
-      step_cell(at);
+    Found found = Found(false, uvec2(0u), uvec2(0u), 0u);
+    while (at.alive && !found.any && at.entry >= at.entry_end && budget > 0) {
+      found = step_cell(at);
       --budget;
     }
+    open_list(found, at);
     while (at.entry < at.entry_end && budget > 0) {
       intersect(ray, texelFetch(ids, int(at.entry)).x, hit);
       ++at.entry;
@@ -176,7 +195,8 @@ bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
 #if ANY_HIT
       if (hit.primitive != NO_PRIMITIVE) return true;
 #endif
-      at.s_end = min(at.s_end, end_of(hit.t, at.t_start));
+      float s_hit = end_of(hit.t, at);
+      at.s_end = s_hit < at.s_end ? s_hit : at.s_end;
       at.alive = at.alive && at.s <= at.s_end;
     }
   }

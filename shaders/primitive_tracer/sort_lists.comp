@@ -12,7 +12,8 @@ layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
 layout(location = 3) uniform uint buckets_per_triangle;
 
 #if CROWDED
-shared uint shared_low, shared_high, shared_start, shared_copies, shared_mask[2];
+shared uint shared_low, shared_high, shared_start, shared_copies, shared_extent,
+    shared_mask[2];
 #define FIRST gl_LocalInvocationIndex
 #define STRIDE 64u
 #define ALONE (gl_LocalInvocationIndex == 0u)
@@ -30,36 +31,42 @@ const uint MOST_ENTRIES = 512u;
 uvec2 depths_of(uint word) { return uvec2(word & 0xffffu, word >> DEPTH_BITS); }
 
 void sort(uint node, uint start, uint end) {
-  // The depths of all entries, and which slices they touch.
+  // The depths of all entries, which slices they touch, and how deep they are together.
   uint low = 0xffffffffu, high = 0u;
+  float extent = 0.0;
   uvec2 mask = uvec2(0u);
   for (uint i = start + FIRST; i < end; i += STRIDE) {
     uvec2 depths = depths_of(texelFetch(listed, int(i)).y);
     low = min(low, depths.x);
     high = max(high, depths.y);
+    extent += float(depths.y - depths.x);
     mask |= mask_between(depths.x >> MASK_SHIFT, depths.y >> MASK_SHIFT);
   }
 #if CROWDED
   if (ALONE) {
     shared_low = 0xffffffffu;
-    shared_high = shared_copies = shared_mask[0] = shared_mask[1] = 0u;
+    shared_high = shared_copies = shared_extent = shared_mask[0] = shared_mask[1] = 0u;
   }
   WAIT
   atomicMin(shared_low, low);
   atomicMax(shared_high, high);
+  atomicAdd(shared_extent, uint(extent) >> 8u);
   atomicOr(shared_mask[0], mask.x);
   atomicOr(shared_mask[1], mask.y);
   WAIT
   low = shared_low;
   high = shared_high;
+  extent = float(shared_extent) * 256.0;
   mask = uvec2(shared_mask[0], shared_mask[1]);
 #endif
 
-  // A power of two of depths a bucket, the least that needs no more buckets than wanted.
+  // A power of two of depths a bucket: the least that needs no more buckets than wanted, and not so
+  // little that the average triangle would stand in more than a few.
   uint wanted = min((end - start) * buckets_per_triangle, MOST_BUCKETS);
   wanted = wanted <= 1u ? 1u : 2u << findMSB(wanted - 1u);
   uint shift = 0u;
-  while ((high >> shift) - (low >> shift) >= wanted) ++shift;
+  float mean = extent / float(end - start);
+  while ((high >> shift) - (low >> shift) >= wanted || float(8u << shift) < mean) ++shift;
   uint first = low >> shift, buckets = (high >> shift) - first + 1u;
 #if CROWDED
   if (ALONE) shared_start = atomicAdd(counters.offsets, buckets + 1u);

@@ -4,6 +4,8 @@
 // difference of two products of coordinates that neighbours share bit by bit. Rounding is monotonic,
 // so the difference has the right sign or is zero, and zero counts as inside: no ray slips between
 // triangles that share vertices. That needs each product rounded by itself: `precise`.
+// Beside a triangle smaller than the rounding of its distance from the ray all differences may come
+// out as zero, so the ray must lie within the triangle's bounds there too.
 #include "tracing/triangles.glsl"
 
 struct Ray {
@@ -48,16 +50,24 @@ Ray make_ray(vec3 origin, float t_min, vec3 direction, float t_max, uint after, 
   return ray;
 }
 
-// Tests primitive `primitive` and keeps it in `hit` if it is closer; of several at the same t the
-// one with the lowest number, so that the result does not depend on the order of tests.
-void intersect(Ray ray, uint primitive, inout TracedHit hit) {
+// Whether 0 lies between the least and the greatest of three. By comparisons: minima and maxima that
+// mind NaN take three instructions each, and these are what a test of a triangle mostly does.
+bool around_zero(float a, float b, float c) {
+  return (a <= 0.0 || b <= 0.0 || c <= 0.0) && (a >= 0.0 || b >= 0.0 || c >= 0.0);
+}
+bool same_sign(float a, float b, float c) {
+  return (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
+}
+
+// Tests primitive `primitive`, which has these corners, and keeps it in `hit` if it is closer; of
+// several at the same t the one with the lowest number, so that the result does not depend on the
+// order of tests.
+void intersect_corners(Ray ray, uint primitive, Corners corners, inout TracedHit hit) {
   COUNT_TEST
-  int i = int(primitive) * 3;
-  vec4 texel0 = texelFetch(triangles, i), texel1 = texelFetch(triangles, i + 1),
-       texel2 = texelFetch(triangles, i + 2);
-  vec3 a = axis_last(texel0.xyz - ray.origin, ray.axis);
-  vec3 b = axis_last(texel1.xyz - ray.origin, ray.axis);
-  vec3 c = axis_last(texel2.xyz - ray.origin, ray.axis);
+  vec3 from_origin = corners.p0 - ray.origin;
+  vec3 a = axis_last(from_origin, ray.axis);
+  vec3 b = axis_last(corners.p1 - ray.origin, ray.axis);
+  vec3 c = axis_last(corners.p2 - ray.origin, ray.axis);
   precise vec2 a2 = a.xy - ray.shear.xy * a.z;
   precise vec2 b2 = b.xy - ray.shear.xy * b.z;
   precise vec2 c2 = c.xy - ray.shear.xy * c.z;
@@ -66,11 +76,23 @@ void intersect(Ray ray, uint primitive, inout TracedHit hit) {
   precise float w = b2.x * a2.y - b2.y * a2.x;
   float determinant = u + v + w;
   float inverse = 1.0 / determinant;
-  float t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * inverse;
-  bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
+  // Where the ray meets the plane, which for walls and floors along the axes is exact near the origin
+  // too; not beyond the corners, since the plane of a sliver is uncertain.
+  vec3 normal = cross(corners.p1 - corners.p0, corners.p2 - corners.p0);
+  vec3 along = vec3(a.z, b.z, c.z) * ray.shear.z;
+  float nearest = min(along.x, min(along.y, along.z)), farthest = max(along.x, max(along.y, along.z));
+  float facing = dot(ray.direction, normal);
+  float t = clamp(dot(from_origin, normal) / facing, nearest, farthest);
+  bool inside = same_sign(u, v, w);
+  bool around = around_zero(a2.x, b2.x, c2.x) && around_zero(a2.y, b2.y, c2.y);
   bool ahead = t > ray.t_min || (t == ray.t_min && primitive > ray.after);
   bool closer = t < hit.t || (t == hit.t && primitive < hit.primitive);
-  bool seen = (floatBitsToUint(texel2.w) & ray.seen_by) != 0u;
-  if (inside && determinant != 0.0 && ahead && closer && seen)
+  bool seen = (corners.flags & ray.seen_by) != 0u;
+  if (inside && around && determinant != 0.0 && facing != 0.0 && ahead && closer && seen)
     hit = TracedHit(t, primitive, v * inverse, w * inverse);
+}
+
+// The same with the corners that the list has.
+void intersect(Ray ray, uint primitive, inout TracedHit hit) {
+  intersect_corners(ray, primitive, fetch_corners(primitive), hit);
 }
