@@ -17,6 +17,7 @@ constexpr int kMostTiles = 1024, kMostBuckets = 255;
 std::vector<std::string> defines(const CubeSettings& settings) {
   return {fmt::format("SINGLE_VIEW {}", int(settings.single_view.has_value())),
           fmt::format("LINKED_LISTS {}", int(settings.linked_lists)),
+          fmt::format("THESIS_REJECTION {}", int(settings.thesis_rejection)),
           fmt::format("NODE_WORDS {}", settings.linked_lists ? 2 : 4)};
 }
 
@@ -54,6 +55,11 @@ CubeTracer::CubeTracer(const CubeSettings& settings, const PoolSizes& first)
   if (settings.tiles < 0 || settings.tiles > kMostTiles)
     fail("{} tiles a side were asked for: choose 1 to {}, or 0 for as many as the scene needs",
          settings.tiles, kMostTiles);
+  if (settings.thesis_rejection && !settings.linked_lists)
+    fail("the thesis' rejection of hits goes with its linked lists: choose these as well");
+  if (!(settings.buckets_per_triangle > 0))
+    fail("{} depth intervals for each triangle were asked for: choose a positive number",
+         settings.buckets_per_triangle);
   if (settings.buckets < 1 || settings.buckets > kMostBuckets)
     fail("{} depth intervals were asked for: choose 1 to {}", settings.buckets, kMostBuckets);
 }

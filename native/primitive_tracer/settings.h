@@ -40,8 +40,11 @@ struct CubeSettings {
   // Depth intervals of a tile with linked lists, 1 .. 255. The thesis calls more than 8 the minimum
   // for decent speed (section 7.4.5); 16 is where memory still grows little.
   int buckets = 16;
+  // With linked lists: Algorithm 2 to the letter, which loses hits (its lines 14 and 18). For
+  // measurements of how many.
+  bool thesis_rejection = false;
   // Without linked lists: intervals for each triangle of a tile, rounded up to a power of two for the
-  // tile, at most 256.
+  // tile, at most 256, and fewer where triangles stand so steep that each would lie in many.
   float buckets_per_triangle = 1;
   // The views' centre, relative to the list's origin. Not given: near the middle of the scene's box,
   // not in it, since modelled scenes have surfaces right there, and a triangle through the centre lies

@@ -29,10 +29,11 @@ vec3 to_tiles(vec3 v, int view) {
 // do to one, in reaches.
 const uint DEPTH_BITS = 22u;
 const float DEPTH_MARGIN = 2e-6;
+const uint EXTENT_SHIFT = 12u;  // so that four million triangles fit a tile
 
 uint depth_code(float depth) {
-  // The largest float below 1 would round up. Clamped as a float: 1e30 is no uint.
-  return uint(clamp(depth, 0.0, 0.999999) * float(1u << DEPTH_BITS));
+  // Clamped as a float, since 1e30 is no uint.
+  return uint((depth > 0.0 ? depth < 1.0 ? depth : 1.0 : 0.0) * float((1u << DEPTH_BITS) - 1u));
 }
 
 // The node of a cell; level 0 are the tiles, and come first.

@@ -2,7 +2,7 @@
 // triangles deserve, then (PLACED 1), with the triangles of each counted, room for the triangles one
 // bucket behind the other, so that what a ray passes in a tile is one run.
 #include "primitive_tracer/build.glsl"
-#include "primitive_tracer/cube_shared.h"
+#include "primitive_tracer/cube.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) buffer Nodes { uvec4 nodes[]; };
@@ -11,12 +11,19 @@ layout(std430, binding = 5) buffer Offsets { uint offsets[]; };
 layout(location = 3) uniform float buckets_per_triangle;
 
 const uint MOST_BUCKETS = 256u;
+// Of one triangle, on average: piles of steep ones would multiply otherwise.
+const float MOST_PLACES = 8.0;
 
 void main() {
   uint tile = invocation();
-  if (tile >= list_sizes.x || ranges[tile].count == 0u) return;
+  if (tile >= list_sizes.x) return;
+  TileRange range = ranges[tile];
+  if (range.count == 0u) return;
 #if !PLACED
-  float wanted = float(ranges[tile].count) * buckets_per_triangle;
+  float whole = float((range.high - range.low) >> EXTENT_SHIFT);
+  float crossed = float(range.extents) / max(float(range.count) * whole, 1.0);  // of the tile's depths
+  float wanted = float(range.count) * buckets_per_triangle;
+  wanted = min(wanted, MOST_PLACES / max(crossed, 1e-6));
   uint buckets = uint(clamp(exp2(ceil(log2(wanted))), 1.0, float(MOST_BUCKETS)));
   uint start = atomicAdd(counters.offsets, buckets + 1u);
   if (start + buckets + 1u > list_sizes.z) return;  // the host makes room and starts again

@@ -184,6 +184,8 @@ void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
   atomicMax(range_words[4u * tile + 1u], last);
 #if !LINKED_LISTS
   atomicAdd(range_words[4u * tile + 2u], 1u);
+  uint extent = (last - first) >> EXTENT_SHIFT;
+  if (extent > 0u) atomicAdd(range_words[4u * tile + 3u], extent);
 #endif
   add_entry(tile, primitive, first, last);
 }

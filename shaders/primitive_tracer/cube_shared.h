@@ -28,7 +28,7 @@ const float POSITION_ERROR = 1e-6;
 struct TileRange {
   uint low, high;  // depths
   uint count;      // triangles
-  uint unused;
+  uint extents;    // of their depths, added up, in units of 2^EXTENT_SHIFT
 };
 SHARED_ASSERT_SIZE(TileRange, 16)
 

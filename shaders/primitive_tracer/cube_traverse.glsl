@@ -7,7 +7,7 @@
 // fall along a ray, so that cells are counted in whole numbers and errors do not add up. A hit counts
 // wherever it lies, and ends the search where the next cell begins behind it: Algorithm 2 rejects
 // hits that rounding puts beside their tile (line 14) and takes one that lies in a later bucket for
-// the closest (line 18).
+// the closest (line 18). THESIS_REJECTION shows what that loses.
 #include "primitive_tracer/cube.glsl"
 
 layout(binding = 1) uniform usamplerBuffer nodes;    // least and greatest depth; lists
@@ -17,7 +17,7 @@ layout(binding = 3) uniform usamplerBuffer ids;      // primitives; links: primi
 const uint TRAVERSAL_WORDS = 8u;
 
 const int START_LEVEL = 3;  // 8x8 tiles: higher levels are seldom empty
-const int STRIDE = 1;       // levels of the pyramid at a time
+const int STRIDE = 2;       // levels of the pyramid at a time
 const float WIDENED = 1.00001;
 
 struct Traversal {
@@ -165,6 +165,7 @@ void begin_list(inout Traversal at, int tile, uvec4 node, uint low, uint high) {
   at.bucket = forward ? from : to;
   at.last_bucket = forward ? to : from;
   at.entry = texelFetch(offsets, tile * cube.grid.z + at.bucket).x;
+  at.entry_end = 0u;  // counts what is tested
   at.listing = true;
 #else
   at.entry = texelFetch(offsets, int(node.z) + from).x;
@@ -177,7 +178,8 @@ void begin_list(inout Traversal at, int tile, uvec4 node, uint low, uint high) {
 // One cell of the view.
 void step_cell(inout Traversal at) {
   COUNT_STEP
-  // Where the ray leaves the cell.
+  // Where the ray leaves the cell. By comparisons here and below: minima and maxima that mind NaN take
+  // three instructions each.
   float size = power_of_two(at.level);
   vec2 border = (vec2(at.cell) + at.far_side) * size;
   vec2 away = at.slope.xy - border * at.slope.z;
@@ -185,10 +187,12 @@ void step_cell(inout Traversal at) {
   float s_x = away.x * at.turn.x > 0.0 ? crossing.x : NEVER;
   float s_y = away.y * at.turn.y > 0.0 ? crossing.y : NEVER;
   bool through_x = s_x <= s_y;
-  float s_next = max(min(s_x, s_y), at.s);
-  float depth_next = at.start.z + min(s_next, at.view_end) * at.slope.z;
-  uint low = depth_code(min(at.depth, depth_next) - DEPTH_MARGIN);
-  uint high = depth_code(max(at.depth, depth_next) + DEPTH_MARGIN);
+  float s_out = through_x ? s_x : s_y;
+  float s_next = s_out > at.s ? s_out : at.s;
+  float depth_next = at.start.z + (s_next < at.view_end ? s_next : at.view_end) * at.slope.z;
+  bool rising = depth_next > at.depth;
+  uint low = depth_code((rising ? at.depth : depth_next) - DEPTH_MARGIN);
+  uint high = depth_code((rising ? depth_next : at.depth) + DEPTH_MARGIN);
 
   int index = node_index(at.view, at.level, at.cell);
   uvec4 node = texelFetch(nodes, index);
@@ -200,7 +204,7 @@ void step_cell(inout Traversal at) {
   int levels_down = min(STRIDE, at.level);
   ivec2 corner = at.cell << levels_down;
   vec3 place = at.start + at.s * at.slope;
-  vec2 child = floor(place.xy / place.z * power_of_two(levels_down - at.level));
+  vec2 child = floor(place.xy * (power_of_two(levels_down - at.level) / place.z));
   child = clamp(child, vec2(corner), vec2(corner + (1 << levels_down) - 1));
   // On to the neighbour, and up where that has another parent.
   ivec2 neighbour = at.cell + (through_x ? ivec2(at.turn.x, 0) : ivec2(0, at.turn.y));
@@ -235,48 +239,64 @@ void shorten(inout Traversal at, TracedHit hit) {
 // One triangle of the list, from the ray's side.
 void step_list(Ray ray, inout Traversal at, inout TracedHit hit) {
   bool forward = at.slope.z >= 0.0;
-  float before = hit.t;
 #if LINKED_LISTS
   if (at.entry != NO_LINK) {
     uvec2 link = texelFetch(ids, int(at.entry)).xy;
     at.entry = link.y;
+    TracedHit before = hit;
     intersect(ray, link.x, hit);
-    if (hit.t < before) shorten(at, hit);
+    ++at.entry_end;
+    COUNT_LIST(uint(at.tile), at.entry_end)
+#if THESIS_REJECTION
+    vec3 place = at.start + (hit.t - at.t_start) * at.slope;
+    if (node_index(at.view, 0, ivec2(floor(place.xy / place.z))) != at.tile) hit = before;
+#else
+    for (int turn = hit.t < before.t ? 0 : 1; turn < 1; ++turn) shorten(at, hit);
+#endif
   }
   if (at.entry == NO_LINK) {
     at.listing = forward ? at.bucket < at.last_bucket : at.bucket > at.last_bucket;
     at.bucket += forward ? 1 : -1;
     if (at.listing) at.entry = texelFetch(offsets, at.tile * cube.grid.z + at.bucket).x;
+#if THESIS_REJECTION
+    if (hit.primitive != NO_PRIMITIVE) {
+      at.listing = at.alive = false;
+      at.s_end = -1.0;
+    }
+#endif
   }
 #else
+  float before = hit.t;
   intersect(ray, texelFetch(ids, int(forward ? at.entry : at.entry_end - 1u)).x, hit);
   if (forward) ++at.entry;
   else --at.entry_end;
-  if (hit.t < before) shorten(at, hit);
+  for (int turn = hit.t < before ? 0 : 1; turn < 1; ++turn) shorten(at, hit);
   at.listing = at.entry < at.entry_end;
 #endif
   at.alive = at.alive && at.s <= at.s_end;
 }
 
 bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
-  while (budget > 0) {
-    if (!at.alive && !at.listing && !next_view(at)) return true;
-    budget -= VIEWS;
-    while ((at.alive || at.listing) && budget > 0) {
-      while (at.alive && !at.listing && budget > 0) {
-        step_cell(at);
-        --budget;
-      }
-      while (at.listing && budget > 0) {
-        step_list(ray, at, hit);
-        --budget;
+  bool left = true;
+  while (left && budget > 0) {
+    // A loop of no or one turn, since software skips that where no ray at hand needs it.
+    for (int turn = at.alive || at.listing ? 1 : 0; turn < 1; ++turn) {
+      left = next_view(at);
+      --budget;
+    }
+    while (at.alive && !at.listing && budget > 0) {
+      step_cell(at);
+      --budget;
+    }
+    while (at.listing && budget > 0) {
+      step_list(ray, at, hit);
+      --budget;
 #if ANY_HIT
-        if (hit.primitive != NO_PRIMITIVE) return true;
+      if (hit.primitive != NO_PRIMITIVE) return true;
 #endif
-      }
     }
   }
-  return false;
+  return !left;
 }
 
 void traversal_save(Traversal at, uint word) {

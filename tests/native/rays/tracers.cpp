@@ -1,6 +1,7 @@
 #include "rays/tracers.h"
 
 #include "base/error.h"
+#include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "rays/brute_force.h"
 
@@ -19,6 +20,12 @@ const std::vector<TracerEntry>& tracers() {
   static const std::vector<TracerEntry> list = {
       {"brute force", make<BruteForceTracer>, true},
       {"orthographic", make<primitive_tracer::OrthographicTracer>},
+      {"cube", make<primitive_tracer::CubeTracer>},
+      {"cube, linked lists",
+       [](const gl::DeviceInfo&) {
+         return std::make_unique<primitive_tracer::CubeTracer>(
+             primitive_tracer::CubeSettings{.linked_lists = true});
+       }},
   };
   return list;
 }
