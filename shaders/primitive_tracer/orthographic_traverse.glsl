@@ -171,7 +171,7 @@ Found step_cell(inout Traversal at) {
 // The run of triangles that the ray passes in a node. It begins one bucket early, since a triangle
 // stands in every second bucket only (sort_lists.comp).
 void open_list(Found found, inout Traversal at) {
-  ivec2 buckets = ivec2(found.depths >> (found.node.y >> NODE_SHIFT & 15u)) -
+  ivec2 buckets = ivec2(found.depths >> (found.node.y >> NODE_SHIFT & 31u)) -
                   int(found.node.y >> NODE_FIRST);
   int last = int(found.node.y >> NODE_BUCKETS & 255u);
   if (!found.any || buckets.x > last + 1 || buckets.y < 0) return;
