@@ -180,6 +180,12 @@ void open_list(Found found, inout Traversal at) {
   COUNT_LIST(found.number, at.entry_end - at.entry)
 }
 
+#if ANY_HIT
+#define MET_ENDS && hit.primitive == NO_PRIMITIVE
+#else
+#define MET_ENDS
+#endif
+
 bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
   while ((at.alive || at.entry < at.entry_end) && budget > 0) {
     Found found = Found(false, uvec2(0u), uvec2(0u), 0u);
@@ -188,17 +194,19 @@ bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
       --budget;
     }
     open_list(found, at);
-    while (at.entry < at.entry_end && budget > 0) {
+
+    uint stop = min(at.entry_end, at.entry + uint(max(budget, 0)));
+    budget -= int(stop - at.entry);
+    while (at.entry < stop MET_ENDS) {
       intersect(ray, texelFetch(ids, int(at.entry)).x, hit);
       ++at.entry;
-      --budget;
-#if ANY_HIT
-      if (hit.primitive != NO_PRIMITIVE) return true;
-#endif
-      float s_hit = end_of(hit.t, at);
-      at.s_end = s_hit < at.s_end ? s_hit : at.s_end;
-      at.alive = at.alive && at.s <= at.s_end;
     }
+#if ANY_HIT
+    if (hit.primitive != NO_PRIMITIVE) return true;
+#endif
+    float s_hit = end_of(hit.t, at);
+    at.s_end = s_hit < at.s_end ? s_hit : at.s_end;
+    at.alive = at.alive && at.s <= at.s_end;
   }
   return !at.alive && at.entry >= at.entry_end;
 }
