@@ -1,8 +1,8 @@
 #include "tracing/ray_waves.h"
 
-#include <fmt/format.h>
+#include "gl/dispatch.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 namespace panoptes::tracing {
 
@@ -10,14 +10,6 @@ namespace {
 
 // Rays that may wait at first; most batches have none.
 constexpr uint32_t kFirstCapacity = 1024;
-
-// Work groups of 64 along x, then y: either dimension has at least 65 535.
-void dispatch(uint32_t invocations) {
-  const uint32_t groups = (invocations + 63) / 64, across = std::min(groups, 65535u);
-  glDispatchCompute(across, across ? (groups + across - 1) / across : 0, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
-}
 
 }  // namespace
 
@@ -56,7 +48,8 @@ void RayWaves::trace(const Tracer& tracer, const TriangleList& triangles, const 
     glUniform1ui(0, count);
     glUniform1ui(1, uint32_t(to.bytes() / record));
     glUniform1i(2, budget);
-    dispatch(count);
+    gl::dispatch(count, GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                            GL_BUFFER_UPDATE_BARRIER_BIT);
     ++dispatches_;
     uint32_t waiting = 0;
     counter_.read(0, 4, &waiting);

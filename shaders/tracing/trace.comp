@@ -1,4 +1,5 @@
 // Traces a batch of rays, or (RESUMED) those of it that were not through yet.
+#include "base/invocation.glsl"
 #include "tracing/intersect.glsl"
 
 layout(local_size_x = 64) in;
@@ -33,7 +34,7 @@ Ray fetch_ray(uint i) {
 }
 
 void main() {
-  uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  uint slot = invocation();
   if (slot >= count) return;
 #if RESUMED
   uint word = slot * SAVED_WORDS;
