@@ -175,7 +175,6 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
     gl::PassScope scope(timer, "structure_sort");
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     pools_.entries().bind(tracing::kStructureUnit);
-    offsets_.clear();
     pools_.use(programs.get(sort_lists(false)));
     glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
     pools_.dispatch(Indirect::kNodes);

@@ -37,7 +37,7 @@ Ray fetch_ray(uint i) {
 }
 
 void main() {
-  uint slot = invocation();
+  uint slot = spread_invocation();
   if (slot >= count) return;
 #if RESUMED
   uint word = slot * SAVED_WORDS;
