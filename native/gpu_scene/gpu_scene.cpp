@@ -16,6 +16,13 @@ constexpr const char* kDefaultMaterial =
     "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
     "}\n";
 
+// What rays have to know of materials.
+std::vector<std::pair<scene::Id, bool>> alphas_by_index(const std::vector<GpuMaterial>& materials) {
+  std::vector<std::pair<scene::Id, bool>> list;
+  for (const GpuMaterial& material : materials) list.emplace_back(material.id, material.facts.alpha);
+  return list;
+}
+
 // What a material shows whose program does not compile.
 constexpr const char* kBrokenMaterial =
     "void evaluate_material(const Hit hit, inout Surface surface) {\n"
@@ -54,12 +61,18 @@ void GpuScene::update(scene::Scene& scene) {
   if (shapes || values_of_any(&scene::MaterialFacts::emission)) ++emission_revision_;
   const bool resized = std::any_of(changes.meshes.begin(), changes.meshes.end(),
                                    [](const auto& item) { return item.second.resized(); });
+  const bool reshaped = std::any_of(changes.meshes.begin(), changes.meshes.end(),
+                                    [](const auto& item) { return item.second.reshaped(); });
   meshes_.update(scene, changes);
+  const auto alphas = alphas_by_index(materials_);
   if (structure) update_materials(scene, changes);
   if (changes.world) update_world(scene);
   if (structure || changes.world || !changes.images.empty()) update_images(scene, changes);
   if (structure || changes.world || !changes.material_params.empty()) update_params(scene);
   const bool records_moved = structure && update_attributes(scene);
+  if (changes.instances || records_moved || reshaped || !changes.instance_matrices.empty() ||
+      (structure && alphas != alphas_by_index(materials_)))
+    ++geometry_revision_;
   if (changes.instances || records_moved)
     instances_.place_all(scene, meshes_);
   else

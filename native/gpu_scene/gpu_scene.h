@@ -64,9 +64,14 @@ class GpuScene {
   int64_t emission_revision() const { return emission_revision_; }
   // The same for the world alone.
   int64_t world_revision() const { return world_revision_; }
+  // The same for what rays meet: shapes, places and visibility of instances, which material each
+  // triangle has, and which of these have an alpha.
+  int64_t geometry_revision() const { return geometry_revision_; }
 
   // Where the GPU holds the scene's instance number `index`, which has to be one that is drawn.
   uint32_t place_of(size_t index) const { return instances_.place_of(index); }
+  // Where materials() holds a material that some drawn instance shows; 0: the one of empty slots.
+  uint32_t material_index(scene::Id id) const { return material_indices_.at(id); }
 
   // The defines and snippets that the generated code of a material (or the world) needs.
   static void add_material(const GpuMaterial& material, gl::ProgramSource& source);
@@ -108,7 +113,8 @@ class GpuScene {
   void begin_draw() const;
 
   gl::DeviceInfo device_;
-  int64_t shadow_revision_ = 0, emission_revision_ = 0, world_revision_ = 0;
+  int64_t shadow_revision_ = 0, emission_revision_ = 0, world_revision_ = 0,
+          geometry_revision_ = 0;
   MeshStore meshes_;
   InstanceList instances_;
   DrawLists draws_;

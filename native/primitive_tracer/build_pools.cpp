@@ -1,6 +1,7 @@
 #include "primitive_tracer/build_pools.h"
 
 #include "base/error.h"
+#include "gl/dispatch.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -40,9 +41,7 @@ PoolSizes first_sizes(uint32_t triangles) {
 }
 
 void BuildPools::dispatch(uint32_t invocations) {
-  const uint32_t groups = (invocations + 63) / 64, across = std::min(groups, 65535u);
-  glDispatchCompute(across, across ? (groups + across - 1) / across : 0, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  gl::dispatch(invocations, GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void BuildPools::dispatch(Indirect over) const {

@@ -12,12 +12,15 @@ namespace panoptes::primitive_tracer {
 
 namespace {
 
-constexpr int kMostTiles = 1024;
+constexpr int kMostTiles = 1024, kMostDivisions = 3;
 
-// Entries that a build may have where tiles are chosen by us: many triangles that each cross most of
-// the scene get larger tiles instead.
+// Entries that a build may have at all: 1 GiB of them.
+constexpr uint32_t kMostEntries = 1u << 27;
+
+// And where tiles are chosen by us: many triangles that each cross most of the scene get larger tiles
+// instead.
 uint32_t entry_limit(uint32_t triangles) {
-  return uint32_t(std::min<uint64_t>(uint64_t(triangles) * 32 + (1u << 20), 1u << 30));
+  return uint32_t(std::min<uint64_t>(uint64_t(triangles) * 32 + (1u << 20), kMostEntries));
 }
 
 int chosen_tiles(uint32_t triangles) {
@@ -59,9 +62,15 @@ std::vector<gl::ProgramSource> orthographic_build_programs() {
 
 OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, const PoolSizes& first)
     : settings_(settings), first_(first) {
-  if (settings.tiles < 0 || settings.tiles > kMostTiles)
-    fail("{} tiles a side were asked for: choose 1 to {}, or 0 for as many as the scene needs",
-         settings.tiles, kMostTiles);
+  const auto check = [](int value, int least, int most, const char* what) {
+    if (value < least || value > most)
+      fail("the structure for ray tracing was asked for {} {}: choose {} to {}", value, what, least,
+           most);
+  };
+  check(settings.tiles, 0, kMostTiles, "tiles a side");
+  check(settings.divisions, 0, kMostDivisions, "divisions of a tile");
+  check(settings.triangles_a_part, 1, 1 << 20, "triangles a part");
+  check(settings.buckets_per_triangle, 1, int(shared::MOST_BUCKETS), "buckets per triangle");
 }
 
 void OrthographicTracer::place(const scene::Bounds& bounds, int tiles) {
@@ -111,7 +120,7 @@ void OrthographicTracer::build(const tracing::TriangleList& triangles, gl::Progr
   for (bool fitted = false; !fitted;) {
     place(triangles.bounds(), tiles);
     pools_.begin(sizes, count, uint32_t(tiles * tiles),
-                 chosen && tiles > 1 ? entry_limit(count) : 1u << 30,
+                 chosen && tiles > 1 ? entry_limit(count) : kMostEntries,
                  sizeof(shared::NodeEntry));
     reserve();
     glBindBufferBase(GL_UNIFORM_BUFFER, tracing::kStructureBlock, view_block_.id());
@@ -121,7 +130,7 @@ void OrthographicTracer::build(const tracing::TriangleList& triangles, gl::Progr
     if (!chosen || tiles == 1)
       fail("the scene's triangles cross more than {} cells of the structure for ray tracing: choose "
            "fewer tiles, or hide or simplify objects",
-           1u << 30);
+           kMostEntries);
     tiles /= 2;
   }
 }
@@ -166,7 +175,6 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
     gl::PassScope scope(timer, "structure_sort");
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     pools_.entries().bind(tracing::kStructureUnit);
-    offsets_.clear();
     pools_.use(programs.get(sort_lists(false)));
     glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
     pools_.dispatch(Indirect::kNodes);

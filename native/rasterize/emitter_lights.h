@@ -8,6 +8,7 @@
 
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/view_block.h"
 #include "rasterize/emitters_shared.h"
 #include "rasterize/g_buffer.h"
 #include "scene/emitters.h"
@@ -40,7 +41,7 @@ class EmitterLights {
   struct Gpu {
     const gpu_scene::GpuScene& scene;
     gl::ProgramCache& programs;
-    ViewBlock& view_block;
+    gpu_scene::ViewBlock& view_block;
     const shared::View& view;
   };
 

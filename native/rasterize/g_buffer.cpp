@@ -61,12 +61,6 @@ gl::ProgramSource bin_program(const char* name) {
   return source;
 }
 
-void ViewBlock::set(const shared::View& view) {
-  if (!buffer_) buffer_ = gl::Buffer(sizeof(view));
-  buffer_.write(0, sizeof(view), &view);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer_.id());
-}
-
 void GBuffer::resize(int width, int height, const GBufferOptions& options) {
   if (width == width_ && height == height_ && options == options_) return;
   // Old storage goes first, so that the peak is not the sum of both.

@@ -36,15 +36,6 @@ gl::ProgramSource surface_program(const gpu_scene::GpuMaterial& material,
 // Programs that sort pixels: "bin_count", "bin_offsets", "bin_scatter".
 gl::ProgramSource bin_program(const char* name);
 
-// Uploads `view` to the uniform block that every shader reads it from.
-class ViewBlock {
- public:
-  void set(const shared::View& view);
-
- private:
-  gl::Buffer buffer_;
-};
-
 class GBuffer {
  public:
   // (Re)allocates when the size or the options differ from the last call's.

@@ -21,7 +21,7 @@ int ShadowMaps::layer_limit(const ShadowSettings& settings, const gl::DeviceInfo
 void ShadowMaps::render(const LightSet& set, const LightBatch& batch,
                         const ShadowSettings& settings, const shared::View& camera,
                         const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
-                        gl::PassTimer& timer, ViewBlock& view_block, bool keep) {
+                        gl::PassTimer& timer, gpu_scene::ViewBlock& view_block, bool keep) {
   const int layers = std::max(int(batch.layers), 1);
   if (!maps_ || maps_.options().layers < layers ||
       maps_.options().width != settings.resolution) {

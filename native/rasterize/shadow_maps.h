@@ -10,6 +10,7 @@
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/lights_shared.h"
 #include "gpu_scene/view.h"
+#include "gpu_scene/view_block.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/shadow_views.h"
@@ -78,7 +79,8 @@ class ShadowMaps {
   // Renders the maps of one batch unless `keep` says that they still hold.
   void render(const LightSet& set, const LightBatch& batch, const ShadowSettings& settings,
               const shared::View& camera, const gpu_scene::GpuScene& scene,
-              gl::ProgramCache& programs, gl::PassTimer& timer, ViewBlock& view_block, bool keep);
+              gl::ProgramCache& programs, gl::PassTimer& timer, gpu_scene::ViewBlock& view_block,
+              bool keep);
   void bind(int unit) const;
   void release();
 

@@ -9,6 +9,7 @@
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/view.h"
+#include "gpu_scene/view_block.h"
 #include "plan/effect.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
@@ -84,7 +85,7 @@ class Realtime {
   std::vector<scene::Light> lights_;
   scene::Bounds bounds_;
 
-  rasterize::ViewBlock view_block_;
+  gpu_scene::ViewBlock view_block_;
   rasterize::GBuffer g_buffer_;
   rasterize::EmitterLights emitters_;
   int64_t emitter_revision_ = -1;

@@ -153,6 +153,8 @@ struct MeshChange {
   std::vector<ArrayChange> attributes;  // as in Mesh; those beyond its end have changed throughout
   // True when the mesh may have to lie elsewhere in memory.
   bool resized() const { return positions.all || triangles.all; }
+  // True when triangles may have other corners.
+  bool reshaped() const { return resized() || !positions.runs.empty() || !triangles.runs.empty(); }
 };
 
 // What has changed since the last take_changes().

@@ -1,8 +1,8 @@
 #include "tracing/ray_waves.h"
 
-#include <fmt/format.h>
+#include "gl/dispatch.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 namespace panoptes::tracing {
 
@@ -11,23 +11,17 @@ namespace {
 // Rays that may wait at first; most batches have none.
 constexpr uint32_t kFirstCapacity = 1024;
 
-// Work groups of 64 along x, then y: either dimension has at least 65 535.
-void dispatch(uint32_t invocations) {
-  const uint32_t groups = (invocations + 63) / 64, across = std::min(groups, 65535u);
-  glDispatchCompute(across, across ? (groups + across - 1) / across : 0, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
 }  // namespace
 
-gl::ProgramSource trace_program(const Tracer& tracer, const TraceOptions& options, bool resumed) {
+gl::ProgramSource trace_program(const Tracer& tracer, const TraceOptions& options, RaySource from) {
   gl::ProgramSource source;
   source.name = "trace";
   source.stages = {{GL_COMPUTE_SHADER, "tracing/trace.comp"}};
   source.defines = {fmt::format("ANY_HIT {}", int(options.any_hit)),
                     fmt::format("COUNT_WORK {}", int(options.count_work)),
-                    fmt::format("RESUMED {}", int(resumed))};
+                    fmt::format("SURFACES {}", int(options.surfaces)),
+                    fmt::format("LISTED {}", int(from == RaySource::kListed)),
+                    fmt::format("RESUMED {}", int(from == RaySource::kResumed))};
   tracer.add_to(source);
   return source;
 }
@@ -42,8 +36,8 @@ void RayWaves::trace(const Tracer& tracer, const TriangleList& triangles, const 
   const auto reserve = [&](gl::Buffer& pending, uint32_t rays_waiting) {
     if (pending.bytes() < rays_waiting * record) pending = gl::Buffer(rays_waiting * record);
   };
-  const auto run = [&](bool resumed, uint32_t count, const gl::Buffer* from, gl::Buffer& to) {
-    programs.get(trace_program(tracer, options, resumed)).use();
+  const auto run = [&](RaySource source, uint32_t count, const gl::Buffer* from, gl::Buffer& to) {
+    programs.get(trace_program(tracer, options, source)).use();
     triangles.texture().bind(kTriangleUnit);
     tracer.bind();
     rays.bind(kRayUnit);
@@ -56,23 +50,26 @@ void RayWaves::trace(const Tracer& tracer, const TriangleList& triangles, const 
     glUniform1ui(0, count);
     glUniform1ui(1, uint32_t(to.bytes() / record));
     glUniform1i(2, budget);
-    dispatch(count);
+    gl::dispatch(count, GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                            GL_BUFFER_UPDATE_BARRIER_BIT);
     ++dispatches_;
     uint32_t waiting = 0;
     counter_.read(0, 4, &waiting);
     return waiting;
   };
 
-  reserve(pending_[0], kFirstCapacity);
-  uint32_t waiting = run(false, batch.count, nullptr, pending_[0]);
+  const RaySource source = batch.listed ? RaySource::kListed : RaySource::kAll;
+  // What listed rays cost is added up, so none of them may start twice.
+  reserve(pending_[0], batch.listed && options.count_work ? batch.count : kFirstCapacity);
+  uint32_t waiting = run(source, batch.count, batch.listed, pending_[0]);
   if (waiting > uint64_t(pending_[0].bytes() / record)) {
     // Some have been counted but not saved: with room for all of them, the same rays wait again.
     reserve(pending_[0], waiting);
-    waiting = run(false, batch.count, nullptr, pending_[0]);
+    waiting = run(source, batch.count, batch.listed, pending_[0]);
   }
   for (int turn = 0; waiting > 0; turn ^= 1) {
     reserve(pending_[turn ^ 1], waiting);  // no more can wait then than wait now
-    waiting = run(true, waiting, &pending_[turn], pending_[turn ^ 1]);
+    waiting = run(RaySource::kResumed, waiting, &pending_[turn], pending_[turn ^ 1]);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
 #include "scene/scene.h"
+#include "tracing/flatten_shared.h"
 #include "tracing/rays_shared.h"
 
 #include <span>
@@ -20,8 +21,9 @@ class TriangleList {
  public:
   explicit TriangleList(const gl::DeviceInfo& device) : device_(device) {}
 
-  // Writes the list again if geometry, places or materials have changed since the last call; true if
-  // so. Throws Error when the driver cannot address so many triangles.
+  // Writes the list again if geometry, places, visibility or alphas have changed since the last call;
+  // true if so. The order is that of the scene's instances, then that of their meshes. `gpu` must be
+  // up to date with `scene`. Throws Error when the driver cannot address so many triangles.
   bool update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu, gl::ProgramCache& programs,
               gl::PassTimer& timer);
   // Takes triangles from the host, about `origin`.
@@ -29,6 +31,9 @@ class TriangleList {
               const glm::vec3& origin = glm::vec3(0));
 
   uint32_t count() const { return count_; }
+  // Triangles that the last update() found not finite or too far from the others to be met; they
+  // are in the list, but nobody sees them.
+  uint32_t lost() const { return lost_; }
   // Where positions are relative to, world space.
   const glm::vec3& origin() const { return origin_; }
   // Holds all triangles that somebody sees; relative to the origin. Empty if there are none.
@@ -40,16 +45,21 @@ class TriangleList {
   std::vector<shared::TracedTriangle> read() const;
 
  private:
-  void reserve(uint32_t count);
+  void reserve(uint64_t count);
+  void flatten(const std::vector<shared::TriangleSpan>& spans, const gpu_scene::GpuScene& gpu,
+               gl::ProgramCache& programs);
 
   gl::DeviceInfo device_;
-  uint32_t count_ = 0;
+  uint32_t count_ = 0, lost_ = 0;
   glm::vec3 origin_{0};
   scene::Bounds bounds_;
   int64_t revision_ = -1;
   gl::Buffer buffer_;
   gl::Texture texture_;
-  gl::Buffer spans_;
+  gl::Buffer spans_, summary_;
 };
+
+// For the validation of shaders.
+gl::ProgramSource flatten_program();
 
 }  // namespace panoptes::tracing

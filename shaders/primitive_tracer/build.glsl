@@ -1,4 +1,5 @@
 // The pools that rasterisation fills: entries of cells, and blocks of large triangles.
+#include "base/invocation.glsl"
 #include "primitive_tracer/build_shared.h"
 
 // Arrangements that rasterise twice define LISTED as 0, then as 1.
@@ -18,9 +19,6 @@ layout(location = 4) uniform uint entry_limit;  // more are not wanted: the host
 bool too_many_entries() {
   return counters.entries > entry_limit || counters.blocks > entry_limit / 16u;
 }
-
-// The number of this invocation where work groups of 64 spread over x and y.
-uint invocation() { return gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u; }
 
 void add_entry(uint cell, uint primitive, uint low, uint high) {
   uint place = atomicAdd(counters.entries, 1u);

@@ -171,7 +171,7 @@ Found step_cell(inout Traversal at) {
 // The run of triangles that the ray passes in a node. It begins one bucket early, since a triangle
 // stands in every second bucket only (sort_lists.comp).
 void open_list(Found found, inout Traversal at) {
-  ivec2 buckets = ivec2(found.depths >> (found.node.y >> NODE_SHIFT & 15u)) -
+  ivec2 buckets = ivec2(found.depths >> (found.node.y >> NODE_SHIFT & 31u)) -
                   int(found.node.y >> NODE_FIRST);
   int last = int(found.node.y >> NODE_BUCKETS & 255u);
   if (!found.any || buckets.x > last + 1 || buckets.y < 0) return;
@@ -179,6 +179,12 @@ void open_list(Found found, inout Traversal at) {
   at.entry_end = texelFetch(offsets, int(found.node.x) + min(buckets.y, last) + 1).x;
   COUNT_LIST(found.number, at.entry_end - at.entry)
 }
+
+#if ANY_HIT
+#define MET_ENDS && hit.primitive == NO_PRIMITIVE
+#else
+#define MET_ENDS
+#endif
 
 bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
   while ((at.alive || at.entry < at.entry_end) && budget > 0) {
@@ -188,17 +194,19 @@ bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
       --budget;
     }
     open_list(found, at);
-    while (at.entry < at.entry_end && budget > 0) {
+
+    uint stop = min(at.entry_end, at.entry + uint(max(budget, 0)));
+    budget -= int(stop - at.entry);
+    while (at.entry < stop MET_ENDS) {
       intersect(ray, texelFetch(ids, int(at.entry)).x, hit);
       ++at.entry;
-      --budget;
-#if ANY_HIT
-      if (hit.primitive != NO_PRIMITIVE) return true;
-#endif
-      float s_hit = end_of(hit.t, at);
-      at.s_end = s_hit < at.s_end ? s_hit : at.s_end;
-      at.alive = at.alive && at.s <= at.s_end;
     }
+#if ANY_HIT
+    if (hit.primitive != NO_PRIMITIVE) return true;
+#endif
+    float s_hit = end_of(hit.t, at);
+    at.s_end = s_hit < at.s_end ? s_hit : at.s_end;
+    at.alive = at.alive && at.s <= at.s_end;
   }
   return !at.alive && at.entry >= at.entry_end;
 }

@@ -7,25 +7,28 @@
 
 layout(local_size_x = 64) in;
 layout(binding = 1) uniform usamplerBuffer listed;  // as NodeEntry: reads are faster this way
-layout(std430, binding = 5) buffer Offsets { uint offsets[]; };  // zero at first
+layout(std430, binding = 5) writeonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
 layout(location = 3) uniform uint buckets_per_triangle;
 
 #if CROWDED
-shared uint shared_low, shared_high, shared_start, shared_copies, shared_extent,
-    shared_mask[2];
+shared uint shared_low, shared_high, shared_start, shared_copies, shared_extent, shared_mask[2];
+shared uint bucket_counts[MOST_BUCKETS];
 #define FIRST gl_LocalInvocationIndex
 #define STRIDE 64u
 #define ALONE (gl_LocalInvocationIndex == 0u)
 #define WAIT memoryBarrier(); barrier();
+uint take(uint bucket) { return atomicAdd(bucket_counts[bucket], 1u); }
 #else
 // Entries of a node that one invocation sorts: all its loops together stay far below llvmpipe's
 // limit of iterations.
 const uint MOST_ENTRIES = 512u;
+uint bucket_counts[MOST_BUCKETS];
 #define FIRST 0u
 #define STRIDE 1u
 #define ALONE true
 #define WAIT
+uint take(uint bucket) { return bucket_counts[bucket]++; }
 #endif
 
 uvec2 depths_of(uint word) { return uvec2(word & 0xffffu, word >> DEPTH_BITS); }
@@ -77,12 +80,14 @@ void sort(uint node, uint start, uint end) {
 #endif
   if (offset + buckets + 1u > list_sizes.z) return;  // the host makes room and starts again
 
+  for (uint b = FIRST; b < buckets; b += STRIDE) bucket_counts[b] = 0u;
+  WAIT
   // A triangle stands in every second bucket of those that it touches, and rays begin one bucket
   // early: they still find it, and where it touches two or three, it is there once or twice.
   uint copies = 0u;
   for (uint i = start + FIRST; i < end; i += STRIDE) {
     uvec2 range = (depths_of(texelFetch(listed, int(i)).y) >> shift) - first;
-    for (uint b = range.x; b <= range.y; b += 2u) atomicAdd(offsets[offset + b], 1u);
+    for (uint b = range.x; b <= range.y; b += 2u) take(b);
     copies += (range.y - range.x) / 2u + 1u;
   }
 #if CROWDED
@@ -90,12 +95,13 @@ void sort(uint node, uint start, uint end) {
   WAIT
   copies = shared_copies;
 #endif
-  // Each bucket's offset goes to its end; listing counts it down to its beginning.
+  // Where each bucket begins.
   if (ALONE) {
     uint at = atomicAdd(counters.ids, copies);
     for (uint b = 0u; b < buckets; ++b) {
-      at += offsets[offset + b];
-      offsets[offset + b] = at;
+      uint count = bucket_counts[b];
+      bucket_counts[b] = offsets[offset + b] = at;
+      at += count;
     }
     offsets[offset + buckets] = at;
     nodes[node] = uvec4(mask, offset, shift << NODE_SHIFT | (buckets - 1u) << NODE_BUCKETS |
@@ -106,7 +112,7 @@ void sort(uint node, uint start, uint end) {
     uvec2 entry = texelFetch(listed, int(i)).xy;
     uvec2 range = (depths_of(entry.y) >> shift) - first;
     for (uint b = range.x; b <= range.y; b += 2u) {
-      uint place = atomicAdd(offsets[offset + b], 0xffffffffu) - 1u;
+      uint place = take(b);
       if (place < list_sizes.w) ids[place] = entry.x;
     }
   }
@@ -119,8 +125,9 @@ void main() {
   if (i >= min(counters.crowded, pool_sizes.y)) return;
   uint node = blocks[i].primitive;
 #else
-  if (invocation() >= node_count()) return;
-  uint node = node_number(invocation());
+  uint i = spread_invocation();
+  if (i >= node_count()) return;
+  uint node = node_number(i);
 #endif
   uint start = lists[node].start, end = min(lists[node].end, pool_sizes.x);
 #if !CROWDED

@@ -6,6 +6,8 @@
 // triangles that share vertices. That needs each product rounded by itself: `precise`.
 // Beside a triangle smaller than the rounding of its distance from the ray all differences may come
 // out as zero, so the ray must lie within the triangle's bounds there too.
+//
+// SURFACES says which triangles are there at all: 0 all, 1 the opaque ones, 2 those with an alpha.
 #include "tracing/triangles.glsl"
 
 struct Ray {
@@ -77,17 +79,27 @@ void intersect_corners(Ray ray, uint primitive, Corners corners, inout TracedHit
   float determinant = u + v + w;
   float inverse = 1.0 / determinant;
   // Where the ray meets the plane, which for walls and floors along the axes is exact near the origin
-  // too; not beyond the corners, since the plane of a sliver is uncertain.
-  vec3 normal = cross(corners.p1 - corners.p0, corners.p2 - corners.p0);
+  // too; not beyond the corners, since the plane of a sliver is uncertain. With the same bits in every
+  // program, or a ray that goes on behind a surface would meet it again.
+  vec3 edge1 = corners.p1 - corners.p0, edge2 = corners.p2 - corners.p0;
+  precise vec3 normal = edge1.yzx * edge2.zxy - edge1.zxy * edge2.yzx;
   vec3 along = vec3(a.z, b.z, c.z) * ray.shear.z;
   float nearest = min(along.x, min(along.y, along.z)), farthest = max(along.x, max(along.y, along.z));
-  float facing = dot(ray.direction, normal);
-  float t = clamp(dot(from_origin, normal) / facing, nearest, farthest);
+  precise float facing = ray.direction.x * normal.x + ray.direction.y * normal.y +
+                         ray.direction.z * normal.z;
+  precise float distance = from_origin.x * normal.x + from_origin.y * normal.y +
+                           from_origin.z * normal.z;
+  float t = clamp(distance / facing, nearest, farthest);
   bool inside = same_sign(u, v, w);
   bool around = around_zero(a2.x, b2.x, c2.x) && around_zero(a2.y, b2.y, c2.y);
   bool ahead = t > ray.t_min || (t == ray.t_min && primitive > ray.after);
   bool closer = t < hit.t || (t == hit.t && primitive < hit.primitive);
   bool seen = (corners.flags & ray.seen_by) != 0u;
+#if SURFACES == 1
+  seen = seen && (corners.flags & TRIANGLE_HAS_ALPHA) == 0u;
+#elif SURFACES == 2
+  seen = seen && (corners.flags & TRIANGLE_HAS_ALPHA) != 0u;
+#endif
   if (inside && around && determinant != 0.0 && facing != 0.0 && ahead && closer && seen)
     hit = TracedHit(t, primitive, v * inverse, w * inverse);
 }

@@ -1,4 +1,6 @@
-// Traces a batch of rays, or (RESUMED) those of it that were not through yet.
+// Traces a batch of rays, those of it that a list names (LISTED), or those that were not through yet
+// (RESUMED).
+#include "base/invocation.glsl"
 #include "tracing/intersect.glsl"
 
 layout(local_size_x = 64) in;
@@ -9,6 +11,8 @@ layout(std430, binding = 1) writeonly buffer PendingOut { uint pending_out[]; };
 layout(std430, binding = 2) buffer Counter { uint pending_count; };
 #if RESUMED
 layout(std430, binding = 3) readonly buffer PendingIn { uint pending_in[]; };
+#elif LISTED
+layout(std430, binding = 3) readonly buffer Listed { uint listed[]; };
 #endif
 #if COUNT_WORK
 layout(std430, binding = 4) buffer Work { TracedWork all_work[]; };
@@ -33,7 +37,7 @@ Ray fetch_ray(uint i) {
 }
 
 void main() {
-  uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  uint slot = spread_invocation();
   if (slot >= count) return;
 #if RESUMED
   uint word = slot * SAVED_WORDS;
@@ -44,14 +48,18 @@ void main() {
                             uintBitsToFloat(get_word(word + 4u)));
   Traversal at = traversal_load(ray, word + 5u);
 #else
+#if LISTED
+  uint index = listed[slot];
+#else
   uint index = slot;
+#endif
   Ray ray = fetch_ray(index);
   TracedHit hit = TracedHit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
   Traversal at = traversal_begin(ray);
 #endif
   bool through = traverse(ray, at, hit, budget);
 #if COUNT_WORK
-#if RESUMED
+#if RESUMED || LISTED
   work.steps += all_work[index].steps;
   work.tests += all_work[index].tests;
   if (work.longest == 0u) work.cell = all_work[index].cell;

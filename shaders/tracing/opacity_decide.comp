@@ -1,0 +1,49 @@
+// Evaluates one material where rays have met it, and lists those that pass: they go on right behind
+// the primitive. By chance, or (TRANSMITTANCE) all that anything of passes.
+#include "base/invocation.glsl"
+#include "gpu_scene/material.glsl"
+#include "generated/material.glsl"
+#include "tracing/rays_shared.h"
+
+layout(local_size_x = 64) in;
+layout(binding = 7) uniform samplerBuffer triangles;  // as TracedTriangle
+layout(std430, binding = 0) readonly buffer Hits { TracedHit hits[]; };
+layout(std430, binding = 1) buffer Rays { TracedRay rays[]; };
+layout(std430, binding = 2) buffer Counter { uint passing_count; };
+layout(std430, binding = 3) readonly buffer Sorted { uint by_material[]; };
+layout(std430, binding = 4) writeonly buffer Passing { uint passing[]; };
+#if TRANSMITTANCE
+layout(std430, binding = 6) buffer Passed { vec4 passed[]; };
+#endif
+layout(location = 1) uniform uvec2 range;  // of by_material: first, count
+
+void main() {
+  uint slot = invocation();
+  if (slot >= range.y) return;
+  uint index = by_material[range.x + slot];
+  TracedRay traced = rays[index];
+  uint primitive = hits[index].primitive;
+
+  Ray ray;
+  ray.origin = vec3(traced.origin_x, traced.origin_y, traced.origin_z);
+  ray.direction = vec3(traced.direction_x, traced.direction_y, traced.direction_z);
+  int texel = int(primitive) * 3;
+  uint instance = floatBitsToUint(texelFetch(triangles, texel).w);
+  uint triangle = floatBitsToUint(texelFetch(triangles, texel + 1).w);
+  Surface surface = empty_surface();
+  evaluate_material(fetch_hit(ray, instance, triangle), surface);
+
+#if TRANSMITTANCE
+  vec3 left = passed[index].rgb * clamp(finite(surface.transparency), 0.0, 1.0);
+  passed[index] = vec4(left, 0.0);
+  bool passes = any(greaterThan(left, vec3(0.0)));
+#else
+  // As the rasteriser does it, but with a number for each ray and primitive.
+  float threshold = unit_float(hash(primitive + hash(traced.seed)));
+  bool passes = 1.0 - luminance(surface.transparency) <= threshold;
+#endif
+  if (!passes) return;
+  rays[index].t_min = hits[index].t;
+  rays[index].after = primitive;
+  passing[atomicAdd(passing_count, 1u)] = index;
+}
