@@ -31,6 +31,17 @@ gl::ProgramSource pass(const CubeSettings& settings, const char* file, int place
   return source;
 }
 
+gl::ProgramSource hardware_pass(const CubeSettings& settings, bool conservative) {
+  gl::ProgramSource source;
+  source.name = "cube structure: raster by hardware";
+  source.stages = {{GL_VERTEX_SHADER, "primitive_tracer/cube_raster.vert"},
+                   {GL_GEOMETRY_SHADER, "primitive_tracer/cube_raster.geom"},
+                   {GL_FRAGMENT_SHADER, "primitive_tracer/cube_raster.frag"}};
+  source.defines = defines(settings);
+  source.defines.push_back(fmt::format("CONSERVATIVE {}", int(conservative)));
+  return source;
+}
+
 // About two triangles a tile were fastest: 128 a side for the cube of 206 k triangles.
 int chosen_tiles(uint32_t triangles) {
   const double side = std::sqrt(triangles / 12.0);
@@ -42,7 +53,9 @@ int chosen_tiles(uint32_t triangles) {
 std::vector<gl::ProgramSource> cube_build_programs(const CubeSettings& settings) {
   std::vector<gl::ProgramSource> sources = {pass(settings, "raster_triangles.comp"),
                                             pass(settings, "raster_blocks.comp"),
-                                            pass(settings, "cube_bounds.comp")};
+                                            pass(settings, "cube_bounds.comp"),
+                                            hardware_pass(settings, false),
+                                            hardware_pass(settings, true)};
   for (int placed : {0, 1}) {
     if (!settings.linked_lists) sources.push_back(pass(settings, "cube_buckets.comp", placed));
     sources.push_back(pass(settings, "cube_fill.comp", placed));
@@ -122,7 +135,7 @@ void CubeTracer::build(const tracing::TriangleList& triangles, gl::ProgramCache&
   const uint32_t most = settings_.most_entries ? settings_.most_entries : uint32_t(texels);
   // Where tiles are chosen, many triangles that each cross most of the scene get larger ones.
   const uint32_t limit =
-      asked ? most : uint32_t(std::min<uint64_t>(most, uint64_t(count) * 32 + (1u << 20)));
+      asked ? most : uint32_t(std::min<uint64_t>(most, uint64_t(count) * 8 + (1u << 18)));
   const PoolSizes sizes = first_.entries ? first_ : first_sizes(count);
   triangles.texture().bind(tracing::kTriangleUnit);
   for (bool fitted = false; !fitted;) {
@@ -158,11 +171,8 @@ void CubeTracer::run_passes(uint32_t triangles, gl::ProgramCache& programs, gl::
     const shared::TileRange empty{0xffffffffu, 0, 0, 0};
     glClearNamedBufferSubData(ranges_.id(), GL_RGBA32UI, 0, base_tiles() * int64_t(sizeof empty),
                               GL_RGBA_INTEGER, GL_UNSIGNED_INT, &empty);
-    pools_.use(programs.get(pass(settings_, "raster_triangles.comp")));
-    BuildPools::dispatch(triangles);
-    pools_.write_arguments(programs);
-    pools_.use(programs.get(pass(settings_, "raster_blocks.comp")));
-    pools_.dispatch(BuildPools::Indirect::kBlocks);
+    if (settings_.hardware_raster) raster_by_hardware(triangles, programs);
+    else raster(triangles, programs);
     pools_.write_arguments(programs);
   }
   {
@@ -177,6 +187,37 @@ void CubeTracer::run_passes(uint32_t triangles, gl::ProgramCache& programs, gl::
   if (settings_.linked_lists) link_lists(programs);
   else run_lists(programs);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void CubeTracer::raster(uint32_t triangles, gl::ProgramCache& programs) {
+  pools_.use(programs.get(pass(settings_, "raster_triangles.comp")));
+  BuildPools::dispatch(triangles);
+  pools_.write_arguments(programs);
+  pools_.use(programs.get(pass(settings_, "raster_blocks.comp")));
+  pools_.dispatch(BuildPools::Indirect::kBlocks);
+}
+
+void CubeTracer::raster_by_hardware(uint32_t triangles, gl::ProgramCache& programs) {
+  const bool conservative = epoxy_has_gl_extension("GL_NV_conservative_raster");
+  const GLsizei side = views_.grid.x;
+  if (!framebuffer_) framebuffer_ = gl::Framebuffer::make();
+  if (!vertex_array_) vertex_array_ = gl::VertexArray::make();
+  glNamedFramebufferParameteri(framebuffer_.id(), GL_FRAMEBUFFER_DEFAULT_WIDTH, side);
+  glNamedFramebufferParameteri(framebuffer_.id(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, side);
+  glNamedFramebufferParameteri(framebuffer_.id(), GL_FRAMEBUFFER_DEFAULT_LAYERS,
+                               settings_.single_view ? 1 : 6);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glBindVertexArray(vertex_array_.id());
+  glViewport(0, 0, side, side);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_SCISSOR_TEST);
+  if (conservative) glEnable(GL_CONSERVATIVE_RASTERIZATION_NV);
+  pools_.use(programs.get(hardware_pass(settings_, conservative)));
+  glDrawArrays(GL_POINTS, 0, GLsizei(triangles));
+  if (conservative) glDisable(GL_CONSERVATIVE_RASTERIZATION_NV);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void CubeTracer::link_lists(gl::ProgramCache& programs) {

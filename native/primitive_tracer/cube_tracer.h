@@ -7,7 +7,7 @@
 //   passes in a tile is one run.
 //
 // Departures: tiles are rasterised by compute, where the thesis relies on conservative rasterisation
-// (NVIDIA only); a triangle's depths in a tile are the plane's over it and never less than what
+// (NVIDIA only, here a choice); a triangle's depths in a tile are the plane's over it and never less than what
 // clipping would give; depths are whole numbers of 22 bits, since atomics want integers; and the
 // traversal corrects Algorithm 2 (shaders/primitive_tracer/cube_traverse.glsl).
 //
@@ -53,6 +53,8 @@ class CubeTracer : public tracing::Tracer {
   void place(const scene::Bounds& bounds, int tiles);
   void reserve();
   void run_passes(uint32_t triangles, gl::ProgramCache& programs, gl::PassTimer& timer);
+  void raster(uint32_t triangles, gl::ProgramCache& programs);
+  void raster_by_hardware(uint32_t triangles, gl::ProgramCache& programs);
   void link_lists(gl::ProgramCache& programs);
   void run_lists(gl::ProgramCache& programs);
   int64_t base_tiles() const;
@@ -63,6 +65,8 @@ class CubeTracer : public tracing::Tracer {
   BuildPools pools_;
   shared::CubeViews views_{};
   gl::Buffer view_block_, nodes_, ranges_, offsets_, ids_;
+  gl::Framebuffer framebuffer_;    // without attachments, for raster_by_hardware()
+  gl::VertexArray vertex_array_;  // without attributes
   gl::Texture node_texture_, offset_texture_, id_texture_;
 };
 

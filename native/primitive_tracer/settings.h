@@ -46,13 +46,16 @@ struct CubeSettings {
   // Without linked lists: intervals for each triangle of a tile, rounded up to a power of two for the
   // tile, at most 256, and fewer where triangles stand so steep that each would lie in many.
   float buckets_per_triangle = 1;
+  // Rasterise by the graphics pipeline, as the thesis does, in place of compute: conservatively where
+  // GL_NV_conservative_raster exists, else in the rectangle around a triangle.
+  bool hardware_raster = false;
   // The views' centre, relative to the list's origin. Not given: near the middle of the scene's box,
   // not in it, since modelled scenes have surfaces right there, and a triangle through the centre lies
   // in all tiles.
-  std::optional<glm::vec3> centre;
+  std::optional<glm::vec3> centre = std::nullopt;
   // Given: rays meet only what this camera sees, also behind its frustum's end (section 7.4.4,
   // "Single-view Ray Tracing"). Its eye is the centre.
-  std::optional<SingleView> single_view;
+  std::optional<SingleView> single_view = std::nullopt;
   // Entries of triangles in tiles beyond which a structure is refused, or where tiles are chosen
   // gets larger ones; 16 byte each while it is built. 0: what a texture of the device can hold.
   uint32_t most_entries = 0;

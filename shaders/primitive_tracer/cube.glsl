@@ -29,7 +29,7 @@ vec3 to_tiles(vec3 v, int view) {
 // do to one, in reaches.
 const uint DEPTH_BITS = 22u;
 const float DEPTH_MARGIN = 2e-6;
-const uint EXTENT_SHIFT = 12u;  // so that four million triangles fit a tile
+const uint EXTENT_SHIFT = 8u;  // of TileRange.extents
 
 uint depth_code(float depth) {
   // Clamped as a float, since 1e30 is no uint.

@@ -23,7 +23,7 @@ void main() {
   float whole = float((range.high - range.low) >> EXTENT_SHIFT);
   float crossed = float(range.extents) / max(float(range.count) * whole, 1.0);  // of the tile's depths
   float wanted = float(range.count) * buckets_per_triangle;
-  wanted = min(wanted, MOST_PLACES / max(crossed, 1e-6));
+  wanted = min(wanted, min(MOST_PLACES / max(crossed, 1e-6), whole + 1.0));
   uint buckets = uint(clamp(exp2(ceil(log2(wanted))), 1.0, float(MOST_BUCKETS)));
   uint start = atomicAdd(counters.offsets, buckets + 1u);
   if (start + buckets + 1u > list_sizes.z) return;  // the host makes room and starts again

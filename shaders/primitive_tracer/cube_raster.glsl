@@ -166,6 +166,8 @@ bool overlaps(Placed placed, vec2 centre, float half_size) {
   return all(greaterThanEqual(e, -reach)) || (placed.edge_on && all(lessThanEqual(e, reach)));
 }
 
+// cube_raster.geom emits no entries.
+#ifndef GEOMETRY_STAGE
 void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
   // The plane over the tile, no further than the triangle itself.
   float slope = dot(placed.normal, vec3(vec2(cell) + 0.5, 1.0));
@@ -185,7 +187,10 @@ void emit(uint primitive, uint view, Placed placed, ivec2 cell) {
 #if !LINKED_LISTS
   atomicAdd(range_words[4u * tile + 2u], 1u);
   uint extent = (last - first) >> EXTENT_SHIFT;
-  if (extent > 0u) atomicAdd(range_words[4u * tile + 3u], extent);
+  // Not past what 32 bits hold: then an average of some 100 000 triangles is as good.
+  if (extent > 0u && range_words[4u * tile + 3u] < 0xc0000000u)
+    atomicAdd(range_words[4u * tile + 3u], extent);
 #endif
   add_entry(tile, primitive, first, last);
 }
+#endif
