@@ -4,11 +4,13 @@
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
+#include "primitive_tracer/cube_tracer.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/sun_cascades.h"
 #include "realtime/realtime.h"
 #include "support.h"
+#include "tracing/ray_waves.h"
 
 #include <unistd.h>
 
@@ -133,6 +135,19 @@ class Shaders : public ::testing::Test {
     for (bool moments : {false, true}) {
       film.start(4, 4, film::PassSet().set(size_t(film::Pass::kDepth)), moments);
       add(realtime::depth_program(film));
+    }
+
+    for (int bits = 0; bits < 6; ++bits) {
+      primitive_tracer::CubeSettings settings{.linked_lists = bits % 3 > 0,
+                                              .thesis_rejection = bits % 3 > 1};
+      if (bits >= 3) settings.single_view = primitive_tracer::SingleView{};
+      for (gl::ProgramSource& source : primitive_tracer::cube_build_programs(settings))
+        add(std::move(source));
+      const primitive_tracer::CubeTracer tracer(settings);
+      for (bool any_hit : {false, true})
+        for (bool count_work : {false, true})
+          for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
+            add(tracing::trace_program(tracer, {any_hit, count_work}, from));
     }
 
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
