@@ -17,7 +17,7 @@ namespace {
 
 using shared::TracedTriangle;
 
-constexpr uint32_t kMostInLeaf = 4;
+constexpr uint32_t kAlwaysLeaf = 2, kMostInLeaf = 4;
 static_assert(kMostInLeaf < 1u << shared::BVH_COUNT_BITS);
 // What a node's visit costs, in triangle tests.
 constexpr float kStepCost = 1.0f;
@@ -102,7 +102,7 @@ class Builder {
       changed_.notify_one();
       return int32_t(place);
     }
-    if (range.size() <= 1) return leaf(range.begin, range.size());
+    if (range.size() <= kAlwaysLeaf) return leaf(range.begin, range.size());
     const Split best = find_split(references_, range);
     if (range.size() <= kMostInLeaf && float(range.size()) <= kStepCost + best.cost)
       return leaf(range.begin, range.size());
@@ -111,13 +111,11 @@ class Builder {
   }
 
   void split(const Range& range, uint32_t place, uint32_t depth, const Split& best) {
-    Range below, above;
     // Whatever the split, halving must then be able to end in time.
     const auto levels = uint32_t(std::bit_width(range.size() - 1));
-    if (best.axis >= 0 && depth + levels <= shared::BVH_DEPTH)
-      apply_split(references_, range, best, below, above);
-    else
-      halve(references_, range, below, above);
+    const bool may_split = best.axis >= 0 && depth + levels <= shared::BVH_DEPTH;
+    const auto [below, above] =
+        may_split ? apply_split(references_, range, best) : halve(references_, range);
     const int32_t child0 = child(below, place + 1, depth + 1);
     const int32_t child1 = child(above, place + below.size(), depth + 1);
     nodes_[place] = {{child0, child1}, {bounds_of(below.bounds), bounds_of(above.bounds)}};
@@ -173,7 +171,7 @@ Bvh build_bvh(std::span<const TracedTriangle> triangles, unsigned threads) {
     all.add(references.back());
   }
   all.end = uint32_t(references.size());
-  if (references.empty()) all.bounds = {{0, 0, 0, 0}, {0, 0, 0, 0}};
+  if (references.empty()) all.bounds = Box{{}, {}};
   return Builder(std::move(references), threads).build(all);
 }
 

@@ -9,12 +9,10 @@ namespace panoptes::bvh_tracer {
 
 namespace {
 
-constexpr uint32_t kMostBins = 16;
-
 // Which bin along each axis a centroid is in. The same arithmetic counts and parts, so that no
 // triangle is taken for being on the other side.
 struct Binning {
-  alignas(16) float origin[4], scale[4];
+  Lanes origin, scale;
 
   Binning(const Box& centroids, uint32_t bins) {
     for (int i = 0; i < 4; ++i) {
@@ -26,8 +24,9 @@ struct Binning {
     }
   }
   bool parts(int axis) const { return scale[axis] > 0; }
-  uint32_t bin(const Centroid& centroid, int axis) const {
-    return uint32_t(int((centroid.at[axis] - origin[axis]) * scale[axis]));
+  uint32_t bin(const Reference& reference, int axis) const {
+    const float middle = reference.box.low[axis] + reference.box.high[axis];
+    return uint32_t(int((middle - origin[axis]) * scale[axis]));
   }
 };
 
@@ -36,24 +35,15 @@ struct Bin {
   uint32_t count = 0;
 };
 
-// Fewer for few triangles, where looking through bins would cost more than filling them.
-uint32_t bins_for(uint32_t count) { return std::clamp(count, 4u, kMostBins); }
-
-}  // namespace
-
-float Box::longest_side() const {
-  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-}
-
-Split find_split(std::span<const Reference> references, const Range& range) {
+template <uint32_t kBins>
+Split find_split_in(std::span<const Reference> references, const Range& range) {
   Split best;
-  best.bins = bins_for(range.size());
-  const Binning binning(range.centroids, best.bins);
-  std::array<std::array<Bin, kMostBins>, 3> bins;
+  best.bins = kBins;
+  const Binning binning(range.centroids, kBins);
+  std::array<std::array<Bin, kBins>, 3> bins;
   for (const Reference& reference : references.subspan(range.begin, range.size())) {
-    const Centroid centroid(reference);
     for (int axis = 0; axis < 3; ++axis) {
-      Bin& bin = bins[size_t(axis)][binning.bin(centroid, axis)];
+      Bin& bin = bins[size_t(axis)][binning.bin(reference, axis)];
       bin.box.add(reference.box);
       ++bin.count;
     }
@@ -64,17 +54,17 @@ Split find_split(std::span<const Reference> references, const Range& range) {
     if (!binning.parts(axis)) continue;
     const auto& along = bins[size_t(axis)];
     // What lies above each plane costs, then what lies below it.
-    std::array<float, kMostBins> above;
+    std::array<float, kBins> above;
     Box box;
     uint32_t count = 0;
-    for (uint32_t i = best.bins - 1; i > 0; --i) {
+    for (uint32_t i = kBins - 1; i > 0; --i) {
       box.add(along[i].box);
       count += along[i].count;
       above[i] = count ? float(count) * box.area(scale) : 0;
     }
     box = Box();
     count = 0;
-    for (uint32_t i = 1; i < best.bins; ++i) {
+    for (uint32_t i = 1; i < kBins; ++i) {
       box.add(along[i - 1].box);
       count += along[i - 1].count;
       if (count == 0 || count == range.size()) continue;
@@ -89,13 +79,25 @@ Split find_split(std::span<const Reference> references, const Range& range) {
   return best;
 }
 
-void apply_split(std::span<Reference> references, const Range& range, const Split& split,
-                 Range& below, Range& above) {
+}  // namespace
+
+float Box::longest_side() const {
+  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+}
+
+// Fewer bins for few triangles, where looking through them would cost more than filling them.
+Split find_split(std::span<const Reference> references, const Range& range) {
+  if (range.size() <= 4) return find_split_in<4>(references, range);
+  if (range.size() <= 8) return find_split_in<8>(references, range);
+  return find_split_in<16>(references, range);
+}
+
+Halves apply_split(std::span<Reference> references, const Range& range, const Split& split) {
   const Binning binning(range.centroids, split.bins);
   const auto is_below = [&](const Reference& reference) {
-    return binning.bin(Centroid(reference), split.axis) < split.bin;
+    return binning.bin(reference, split.axis) < split.bin;
   };
-  below = above = Range();
+  Range below, above;
   below.begin = range.begin;
   above.end = range.end;
   uint32_t low = range.begin, high = range.end;
@@ -108,9 +110,10 @@ void apply_split(std::span<Reference> references, const Range& range, const Spli
     above.add(references[--high]);
   }
   below.end = above.begin = low;
+  return {below, above};
 }
 
-void halve(std::span<Reference> references, const Range& range, Range& below, Range& above) {
+Halves halve(std::span<Reference> references, const Range& range) {
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (range.centroids.high[i] - range.centroids.low[i] >
@@ -120,15 +123,16 @@ void halve(std::span<Reference> references, const Range& range, Range& below, Ra
   const auto first = references.begin();
   std::nth_element(first + range.begin, first + middle, first + range.end,
                    [&](const Reference& a, const Reference& b) {
-                     const float at_a = Centroid(a).at[axis], at_b = Centroid(b).at[axis];
+                     const float at_a = centroid(a)[axis], at_b = centroid(b)[axis];
                      return at_a < at_b || (at_a == at_b && a.primitive() < b.primitive());
                    });
-  below = above = Range();
+  Range below, above;
   below.begin = range.begin;
   below.end = above.begin = middle;
   above.end = range.end;
   for (uint32_t i = range.begin; i < middle; ++i) below.add(references[i]);
   for (uint32_t i = middle; i < range.end; ++i) above.add(references[i]);
+  return {below, above};
 }
 
 }  // namespace panoptes::bvh_tracer

@@ -8,23 +8,23 @@
 
 namespace panoptes::bvh_tracer {
 
-// Four lanes, so that compilers make one instruction of a loop over them. The last one of `low` is
-// free for its user.
+// Four numbers that one instruction handles (an extension that GCC and Clang share).
+using Lanes = float __attribute__((vector_size(16)));
+
+// The last lane of `low` is free for its user.
 struct Box {
   static constexpr float kEmpty = std::numeric_limits<float>::max();
-  alignas(16) float low[4] = {kEmpty, kEmpty, kEmpty, kEmpty};
-  alignas(16) float high[4] = {-kEmpty, -kEmpty, -kEmpty, -kEmpty};
+  Lanes low = {kEmpty, kEmpty, kEmpty, kEmpty};
+  Lanes high = {-kEmpty, -kEmpty, -kEmpty, -kEmpty};
 
-  void add(const float* point_low, const float* point_high) {
-    for (int i = 0; i < 4; ++i) low[i] = point_low[i] < low[i] ? point_low[i] : low[i];
-    for (int i = 0; i < 4; ++i) high[i] = point_high[i] > high[i] ? point_high[i] : high[i];
+  void add(const Box& other) {
+    low = other.low < low ? other.low : low;
+    high = other.high > high ? other.high : high;
   }
-  void add(const Box& other) { add(other.low, other.high); }
   // Half of its surface, lengths being in units of 1 / `scale`: so that none is too large or small.
   float area(float scale) const {
-    const float x = (high[0] - low[0]) * scale, y = (high[1] - low[1]) * scale,
-                z = (high[2] - low[2]) * scale;
-    return x * y + y * z + z * x;
+    const Lanes side = (high - low) * scale;
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
   }
   float longest_side() const;
 };
@@ -36,12 +36,7 @@ struct Reference {
 };
 
 // Twice the middle of a reference's box.
-struct Centroid {
-  alignas(16) float at[4];
-  explicit Centroid(const Reference& reference) {
-    for (int i = 0; i < 4; ++i) at[i] = reference.box.low[i] + reference.box.high[i];
-  }
-};
+inline Lanes centroid(const Reference& reference) { return reference.box.low + reference.box.high; }
 
 // Consecutive references, with the bounds of their boxes and of their centroids.
 struct Range {
@@ -50,9 +45,9 @@ struct Range {
 
   uint32_t size() const { return end - begin; }
   void add(const Reference& reference) {
-    const Centroid centroid(reference);
     bounds.add(reference.box);
-    centroids.add(centroid.at, centroid.at);
+    const Lanes middle = centroid(reference);
+    centroids.add({middle, middle});
   }
 };
 
@@ -68,11 +63,14 @@ struct Split {
 
 // The best plane by the surface-area heuristic.
 Split find_split(std::span<const Reference> references, const Range& range);
+
+struct Halves {
+  Range below, above;
+};
 // Orders the references of `range` so that those below the plane come first.
-void apply_split(std::span<Reference> references, const Range& range, const Split& split,
-                 Range& below, Range& above);
-// The same in halves of equal numbers, by centroids along the axis on which they spread most, then
-// by the numbers of primitives: for what no plane parts, and where the depth is used up.
-void halve(std::span<Reference> references, const Range& range, Range& below, Range& above);
+Halves apply_split(std::span<Reference> references, const Range& range, const Split& split);
+// The same with equal numbers, by centroids along the axis on which they spread most, then by the
+// numbers of primitives: for what no plane parts, and where the depth is used up.
+Halves halve(std::span<Reference> references, const Range& range);
 
 }  // namespace panoptes::bvh_tracer
