@@ -1,6 +1,7 @@
 // Every permutation that native code can ask for: valid to the reference compiler, and accepted by
 // the driver at hand.
 #include "base/error.h"
+#include "bvh_tracer/bvh_tracer.h"
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
@@ -9,6 +10,7 @@
 #include "rasterize/sun_cascades.h"
 #include "realtime/realtime.h"
 #include "support.h"
+#include "tracing/ray_waves.h"
 
 #include <unistd.h>
 
@@ -134,6 +136,11 @@ class Shaders : public ::testing::Test {
       film.start(4, 4, film::PassSet().set(size_t(film::Pass::kDepth)), moments);
       add(realtime::depth_program(film));
     }
+
+    const bvh_tracer::BvhTracer bvh(context->device());
+    for (int bits = 0; bits < 8; ++bits)
+      add(tracing::trace_program(bvh, {.any_hit = bool(bits & 1), .count_work = bool(bits & 2)},
+                                 bool(bits & 4)));
 
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
       gpu_scene::GpuShading world;

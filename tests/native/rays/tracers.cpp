@@ -1,6 +1,7 @@
 #include "rays/tracers.h"
 
 #include "base/error.h"
+#include "bvh_tracer/bvh_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "rays/brute_force.h"
 
@@ -19,6 +20,10 @@ const std::vector<TracerEntry>& tracers() {
   static const std::vector<TracerEntry> list = {
       {"brute force", make<BruteForceTracer>, true},
       {"orthographic", make<primitive_tracer::OrthographicTracer>},
+      {"bvh",
+       [](const gl::DeviceInfo& device) {
+         return std::make_unique<bvh_tracer::BvhTracer>(device);
+       }},
   };
   return list;
 }
