@@ -37,4 +37,18 @@ const TracerEntry& tracer_named(const std::string& name) {
   fail("there is no ray tracer '{}': choose one of {}", name, fmt::join(names, ", "));
 }
 
+std::vector<TracerVariant> tracer_variants() {
+  std::vector<TracerVariant> variants;
+  for (int tiles : {64, 128, 256})
+    for (int buckets : {1, 2, 4, 8}) {
+      primitive_tracer::OrthographicSettings settings;
+      settings.tiles = tiles;
+      settings.buckets_per_triangle = buckets;
+      variants.push_back({"orthographic", tiles, double(buckets), [settings] {
+                            return std::make_unique<primitive_tracer::OrthographicTracer>(settings);
+                          }});
+    }
+  return variants;
+}
+
 }  // namespace panoptes::test
