@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "bvh_tracer/bvh_tracer.h"
 #include "film/film.h"
+#include "primitive_tracer/orthographic_tracer.h"
 #include "gl/context.h"
 #include "gl/program.h"
 #include "rasterize/emitter_lights.h"
@@ -138,9 +139,15 @@ class Shaders : public ::testing::Test {
     }
 
     const bvh_tracer::BvhTracer bvh(context->device());
-    for (int bits = 0; bits < 8; ++bits)
-      add(tracing::trace_program(bvh, {.any_hit = bool(bits & 1), .count_work = bool(bits & 2)},
-                                 bool(bits & 4)));
+    const primitive_tracer::OrthographicTracer orthographic;
+    for (const gl::ProgramSource& source : primitive_tracer::orthographic_build_programs())
+      add(source);
+    using tracing::RaySource;
+    for (const tracing::Tracer* tracer : {(const tracing::Tracer*)&bvh, (const tracing::Tracer*)&orthographic})
+      for (int bits = 0; bits < 4; ++bits)
+        for (RaySource from : {RaySource::kAll, RaySource::kListed, RaySource::kResumed})
+          add(tracing::trace_program(
+              *tracer, {.any_hit = bool(bits & 1), .count_work = bool(bits & 2)}, from));
 
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
       gpu_scene::GpuShading world;
