@@ -104,7 +104,7 @@ bool BuildPools::fitted() {
   if (over_limit()) return false;
   const PoolSizes before = sizes_;
   raise(sizes_.entries, counts_.entries, "entries of triangles in cells");
-  raise(sizes_.blocks, std::max(counts_.blocks, counts_.crowded), "blocks of large triangles");
+  raise(sizes_.blocks, counts_.blocks, "blocks of large triangles");
   raise(sizes_.nodes, counts_.nodes, "divided cells");
   raise(sizes_.offsets, counts_.offsets, "buckets");
   raise(sizes_.ids, counts_.ids, "triangles in buckets");

@@ -81,11 +81,14 @@ int64_t CubeTracer::base_tiles() const {
   return (settings_.single_view ? 1 : 6) * int64_t(views_.grid.x) * views_.grid.x;
 }
 
-int64_t CubeTracer::nodes() const { return (4 * base_tiles() - (settings_.single_view ? 1 : 6)) / 3; }
+int64_t CubeTracer::nodes() const {
+  return (4 * base_tiles() - (settings_.single_view ? 1 : 6)) / 3;
+}
 
 void CubeTracer::place(const scene::Bounds& bounds, int tiles) {
   const bool empty = bounds.empty();
-  const glm::vec3 low = empty ? glm::vec3(0) : bounds.low, high = empty ? glm::vec3(0) : bounds.high;
+  const glm::vec3 low = empty ? glm::vec3(0) : bounds.low,
+                  high = empty ? glm::vec3(0) : bounds.high;
   const glm::vec3 size = high - low;
   glm::vec3 centre = settings_.centre.value_or(low + size * glm::vec3(0.5137f, 0.5071f, 0.4887f));
   if (settings_.single_view) {
@@ -153,7 +156,8 @@ void CubeTracer::build(const tracing::TriangleList& triangles, gl::ProgramCache&
     tiles /= 2;
   }
   if (asked && tiles != asked)
-    fail("with {} tiles a side, triangles cross more tiles than the graphics driver can list: choose "
+    fail("with {} tiles a side, triangles cross more tiles than the graphics driver can list: "
+         "choose "
          "{} tiles or fewer",
          asked, tiles);
 }
@@ -171,8 +175,10 @@ void CubeTracer::run_passes(uint32_t triangles, gl::ProgramCache& programs, gl::
     const shared::TileRange empty{0xffffffffu, 0, 0, 0};
     glClearNamedBufferSubData(ranges_.id(), GL_RGBA32UI, 0, base_tiles() * int64_t(sizeof empty),
                               GL_RGBA_INTEGER, GL_UNSIGNED_INT, &empty);
-    if (settings_.hardware_raster) raster_by_hardware(triangles, programs);
-    else raster(triangles, programs);
+    if (settings_.hardware_raster)
+      raster_by_hardware(triangles, programs);
+    else
+      raster(triangles, programs);
     pools_.write_arguments(programs);
   }
   {
@@ -184,8 +190,10 @@ void CubeTracer::run_passes(uint32_t triangles, gl::ProgramCache& programs, gl::
     }
   }
   gl::PassScope scope(timer, "structure_lists");
-  if (settings_.linked_lists) link_lists(programs);
-  else run_lists(programs);
+  if (settings_.linked_lists)
+    link_lists(programs);
+  else
+    run_lists(programs);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

@@ -1,19 +1,21 @@
-// The structure of chapter 7 (DIRT) as the thesis has it (section 7.3.1): six perspective views in the
-// arrangement of a cube, or one camera's, divided into tiles with bounds of depth, mipmapped for Hi-Z,
-// and into buckets over depth that list the triangles which cross them. Two forms of lists:
+// The structure of chapter 7 (DIRT) as the thesis has it (section 7.3.1): six perspective views in
+// the arrangement of a cube, or one camera's, divided into tiles with bounds of depth, mipmapped
+// for Hi-Z, and into buckets over depth that list the triangles which cross them. Two forms of
+// lists:
 //
 // - linked_lists: the thesis', with a fixed number of buckets and a linked list each (7.1);
 // - else runs in one array, with as many buckets as a tile's triangles deserve, so that what a ray
 //   passes in a tile is one run.
 //
-// Departures: tiles are rasterised by compute, where the thesis relies on conservative rasterisation
-// (NVIDIA only, here a choice); a triangle's depths in a tile are the plane's over it and never less than what
-// clipping would give; depths are whole numbers of 22 bits, since atomics want integers; and the
-// traversal corrects Algorithm 2 (shaders/primitive_tracer/cube_traverse.glsl).
+// Departures: tiles are rasterised by compute, where the thesis relies on conservative
+// rasterisation (NVIDIA only, here a choice); a triangle's depths in a tile are the plane's over it
+// and never less than what clipping would give; depths are whole numbers of 22 bits, since atomics
+// want integers; and the traversal corrects Algorithm 2
+// (shaders/primitive_tracer/cube_traverse.glsl).
 //
 // Passes, in order: raster_triangles and raster_blocks (entries and depth bounds), cube_bounds (a
-// level at a time), then for linked lists cube_fill, else cube_buckets (how many), cube_fill (counts),
-// cube_buckets (places), cube_fill (lists).
+// level at a time), then for linked lists cube_fill, else cube_buckets (how many), cube_fill
+// (counts), cube_buckets (places), cube_fill (lists).
 #pragma once
 
 #include "primitive_tracer/build_pools.h"
@@ -65,7 +67,7 @@ class CubeTracer : public tracing::Tracer {
   BuildPools pools_;
   shared::CubeViews views_{};
   gl::Buffer view_block_, nodes_, ranges_, offsets_, ids_;
-  gl::Framebuffer framebuffer_;    // without attachments, for raster_by_hardware()
+  gl::Framebuffer framebuffer_;   // without attachments, for raster_by_hardware()
   gl::VertexArray vertex_array_;  // without attributes
   gl::Texture node_texture_, offset_texture_, id_texture_;
 };

@@ -46,6 +46,7 @@ gl::ProgramSource raster_blocks(bool listed) {
   return pass("blocks", "raster_blocks.comp", listed ? "LISTED 1" : "LISTED 0");
 }
 gl::ProgramSource begin_lists() { return pass("lists", "begin_lists.comp"); }
+gl::ProgramSource order_lists() { return pass("order", "order_lists.comp"); }
 gl::ProgramSource sort_lists(bool crowded) {
   return pass("sorting", "sort_lists.comp", crowded ? "CROWDED 1" : "CROWDED 0");
 }
@@ -57,7 +58,7 @@ gl::ProgramSource pyramid() { return pass("pyramid", "pyramid.comp"); }
 std::vector<gl::ProgramSource> orthographic_build_programs() {
   return {density(),     divide(),          raster_triangles(false), raster_triangles(true),
           begin_lists(), sort_lists(false), raster_blocks(false),    raster_blocks(true),
-          gather(),      sort_lists(true),  pyramid()};
+          order_lists(), sort_lists(true),  gather(),                pyramid()};
 }
 
 OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, const PoolSizes& first)
@@ -105,6 +106,7 @@ void OrthographicTracer::reserve() {
   const PoolSizes& sizes = pools_.sizes();
   const int64_t nodes = int64_t(view_.grid.w) + view_.grid.y * view_.grid.y + sizes.nodes;
   if (grow(nodes_, nodes * 16)) node_texture_ = gl::Texture(GL_RGBA32UI, nodes_);
+  grow(order_, (nodes - view_.grid.w) * 4);
   grow(lists_, nodes * int64_t(sizeof(shared::NodeList)));
   if (grow(offsets_, int64_t(sizes.offsets) * 4)) offset_texture_ = gl::Texture(GL_R32UI, offsets_);
   if (grow(ids_, int64_t(sizes.ids) * 4)) id_texture_ = gl::Texture(GL_R32UI, ids_);
@@ -145,6 +147,7 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
   bind(4, lists_);
   bind(5, offsets_);
   bind(6, ids_);
+  bind(7, order_);
   const uint32_t tiles = uint32_t(view_.grid.y * view_.grid.y);
   {
     gl::PassScope scope(timer, "structure_divide");
@@ -175,10 +178,12 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
     gl::PassScope scope(timer, "structure_sort");
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     pools_.entries().bind(tracing::kStructureUnit);
+    pools_.use(programs.get(order_lists()));
+    pools_.dispatch(Indirect::kNodes);
+    pools_.write_arguments(programs);
     pools_.use(programs.get(sort_lists(false)));
     glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
     pools_.dispatch(Indirect::kNodes);
-    pools_.write_arguments(programs);
     pools_.use(programs.get(sort_lists(true)));
     glUniform1ui(3, uint32_t(settings_.buckets_per_triangle));
     pools_.dispatch(Indirect::kCrowded);

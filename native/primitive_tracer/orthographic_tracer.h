@@ -10,8 +10,8 @@
 // the first hit (line 18): a ray stops where the next cell begins behind its closest hit.
 //
 // Passes, in order: density (triangles a tile), divide (crowded tiles), raster_triangles and
-// raster_blocks (to count a node's triangles), begin_lists, both again (to list them), sort_lists
-// (into buckets), gather and pyramid (masks).
+// raster_blocks (to count a node's triangles), begin_lists, both again (to list them),
+// order_lists (by length), sort_lists (into buckets), gather and pyramid (masks).
 #pragma once
 
 #include "primitive_tracer/build_pools.h"
@@ -46,7 +46,7 @@ class OrthographicTracer : public tracing::Tracer {
   PoolSizes first_;
   BuildPools pools_;
   shared::OrthographicView view_{};
-  gl::Buffer view_block_, nodes_, lists_, offsets_, ids_;
+  gl::Buffer view_block_, nodes_, lists_, order_, offsets_, ids_;
   gl::Texture node_texture_, offset_texture_, id_texture_;
 };
 

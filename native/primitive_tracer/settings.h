@@ -10,15 +10,16 @@ namespace panoptes::primitive_tracer {
 
 struct OrthographicSettings {
   // Tiles along the longer side of the view, rounded up to a power of two, 1 .. 1024; 0 follows the
-  // number of triangles: about one tile for each eight of them was fastest (128 for 206 k triangles).
+  // number of triangles: about one tile for each eight of them was fastest (128 for 206 k
+  // triangles).
   int tiles = 0;
   // Most times that a crowded tile is halved, 0 .. 3. Twice (4x4 parts) trades the fewest tests for
   // the fewest steps of diffuse rays; three times costs more to build than it gains.
   int divisions = 2;
   // Triangles that a part of a divided tile should hold at most.
   int triangles_a_part = 8;
-  // Buckets over depth for each triangle of a node, up to 256. Four instead of two save a seventh of
-  // the tests for a third more memory and no time to speak of.
+  // Buckets over depth for each triangle of a node, up to 256. Four instead of two save a seventh
+  // of the tests for a third more memory and no time to speak of.
   int buckets_per_triangle = 4;
 };
 
@@ -43,15 +44,15 @@ struct CubeSettings {
   // With linked lists: Algorithm 2 to the letter, which loses hits (its lines 14 and 18). For
   // measurements of how many.
   bool thesis_rejection = false;
-  // Without linked lists: intervals for each triangle of a tile, rounded up to a power of two for the
-  // tile, at most 256, and fewer where triangles stand so steep that each would lie in many.
+  // Without linked lists: intervals for each triangle of a tile, rounded up to a power of two for
+  // the tile, at most 256, and fewer where triangles stand so steep that each would lie in many.
   float buckets_per_triangle = 1;
-  // Rasterise by the graphics pipeline, as the thesis does, in place of compute: conservatively where
-  // GL_NV_conservative_raster exists, else in the rectangle around a triangle.
+  // Rasterise by the graphics pipeline, as the thesis does, in place of compute: conservatively
+  // where GL_NV_conservative_raster exists, else in the rectangle around a triangle.
   bool hardware_raster = false;
-  // The views' centre, relative to the list's origin. Not given: near the middle of the scene's box,
-  // not in it, since modelled scenes have surfaces right there, and a triangle through the centre lies
-  // in all tiles.
+  // The views' centre, relative to the list's origin. Not given: near the middle of the scene's
+  // box, not in it, since modelled scenes have surfaces right there, and a triangle through the
+  // centre lies in all tiles.
   std::optional<glm::vec3> centre = std::nullopt;
   // Given: rays meet only what this camera sees, also behind its frustum's end (section 7.4.4,
   // "Single-view Ray Tracing"). Its eye is the centre.

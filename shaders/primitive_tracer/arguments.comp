@@ -12,5 +12,5 @@ void main() {
   counters.dispatch_blocks = groups_for(min(counters.blocks, pool_sizes.y) * 8u);
   counters.dispatch_entries = groups_for(min(counters.entries, pool_sizes.x));
   counters.dispatch_nodes = groups_for(list_sizes.x + min(counters.nodes, list_sizes.y));
-  counters.dispatch_crowded = groups_for(min(counters.crowded, pool_sizes.y) * 64u);
+  counters.dispatch_crowded = groups_for(counters.lists[CROWDED_LISTS] * 64u);
 }

@@ -1,4 +1,5 @@
-// Gives every node room for the entries that were counted in it.
+// Gives every node room for the entries that were counted in it, and a rank among the nodes whose
+// lists are about as long.
 #include "primitive_tracer/nodes.glsl"
 
 layout(local_size_x = 64) in;
@@ -10,4 +11,5 @@ void main() {
   if (count == 0u || counters.entries > 0xc0000000u) return;
   uint start = atomicAdd(counters.entries, count);
   lists[node] = NodeList(start, start);
+  nodes[node].x = atomicAdd(counters.lists[list_class(count)], 1u);
 }

@@ -21,6 +21,8 @@ struct RasterBlock {
 };
 SHARED_ASSERT_SIZE(RasterBlock, 16)
 
+const uint CROWDED_LISTS = 10u;  // index in BuildCounters.lists
+
 // Counted past the end of what they count, so that the host knows what would have fitted.
 struct BuildCounters {
   uint entries;  // CellEntry
@@ -28,13 +30,12 @@ struct BuildCounters {
   uint nodes;    // that an arrangement allocates beside its dense ones
   uint offsets;  // words that say where buckets begin
   uint ids;      // triangles in buckets
-  uint crowded;  // nodes that a work group sorts
-  uint unused0, unused1;
+  uint lists[11];  // nodes by the length of their lists: ceil(log2), and all longer ones last
   uvec4 dispatch_blocks;   // indirect dispatch over blocks, eight invocations each
   uvec4 dispatch_entries;  // indirect dispatch over entries
   uvec4 dispatch_nodes;    // indirect dispatch over dense and allocated nodes
   uvec4 dispatch_crowded;  // indirect dispatch over crowded nodes, a work group each
 };
-SHARED_ASSERT_SIZE(BuildCounters, 96)
+SHARED_ASSERT_SIZE(BuildCounters, 128)
 
 SHARED_END

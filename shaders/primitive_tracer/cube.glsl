@@ -1,5 +1,5 @@
-// From the space of the triangle list to the tiles of a view. Tile coordinates are homogeneous:
-// x / z and y / z count tiles and z is the depth, in reaches. So borders of tiles are planes through
+// From the space of the triangle list to the tiles of a view. Tile coordinates are homogeneous: x /
+// z and y / z count tiles and z is the depth, in reaches. So borders of tiles are planes through
 // the centre, and a line stays a line.
 #include "primitive_tracer/cube_shared.h"
 #include "tracing/triangles.glsl"
@@ -43,8 +43,8 @@ int node_index(int view, int level, ivec2 cell) {
          (view * narrow + cell.y) * narrow + cell.x;
 }
 
-// The uniform intervals of a tile's depths (7.1). Counting from low to high + 1 keeps the farthest in
-// the last bucket and a tile of one depth from dividing by zero.
+// The uniform intervals of a tile's depths (7.1). Counting from low to high + 1 keeps the farthest
+// in the last bucket and a tile of one depth from dividing by zero.
 int bucket_of(uint depth, uvec2 bounds, int buckets) {
   float place = float(clamp(depth, bounds.x, bounds.y) - bounds.x);
   return min(int(place * (float(buckets) / float(bounds.y - bounds.x + 1u))), buckets - 1);

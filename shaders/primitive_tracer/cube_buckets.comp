@@ -1,6 +1,6 @@
 // Gives every tile that holds triangles its buckets over depth: first (PLACED 0) as many as its
-// triangles deserve, then (PLACED 1), with the triangles of each counted, room for the triangles one
-// bucket behind the other, so that what a ray passes in a tile is one run.
+// triangles deserve, then (PLACED 1), with the triangles of each counted, room for the triangles
+// one bucket behind the other, so that what a ray passes in a tile is one run.
 #include "primitive_tracer/build.glsl"
 #include "primitive_tracer/cube.glsl"
 
@@ -21,7 +21,8 @@ void main() {
   if (range.count == 0u) return;
 #if !PLACED
   float whole = float((range.high - range.low) >> EXTENT_SHIFT);
-  float crossed = float(range.extents) / max(float(range.count) * whole, 1.0);  // of the tile's depths
+  // The part of the tile's depths that a triangle crosses.
+  float crossed = float(range.extents) / max(float(range.count) * whole, 1.0);
   float wanted = float(range.count) * buckets_per_triangle;
   wanted = min(wanted, min(MOST_PLACES / max(crossed, 1e-6), whole + 1.0));
   uint buckets = uint(clamp(exp2(ceil(log2(wanted))), 1.0, float(MOST_BUCKETS)));

@@ -1,5 +1,5 @@
-// Puts the entries into all buckets of their tiles that they reach into (thesis, section 7.3.1.2): into
-// linked lists, or counts them first (PLACED 0) and lists them then (PLACED 1).
+// Puts the entries into all buckets of their tiles that they reach into (thesis, section 7.3.1.2):
+// into linked lists, or counts them first (PLACED 0) and lists them then (PLACED 1).
 #include "primitive_tracer/build.glsl"
 #include "primitive_tracer/cube.glsl"
 

@@ -1,6 +1,6 @@
 // Sends a triangle into every view that may see it, as a shape whose tiles cube_raster.frag chooses
-// from: with CONSERVATIVE the triangle itself, a little larger, since hardware then visits each tile
-// that it touches; else, and where the larger triangle has no corners, its rectangle of tiles.
+// from: with CONSERVATIVE the triangle itself, a little larger, since hardware then visits each
+// tile that it touches; else, and where the larger triangle has no corners, its rectangle of tiles.
 #define GEOMETRY_STAGE
 #include "primitive_tracer/cube_raster.glsl"
 

@@ -1,6 +1,6 @@
 // Triangles in the perspective views, for the raster passes: tile by tile, with the range of depths
-// that the triangle has there (thesis, section 7.3.1.1), as the plane over the tile gives it, which is
-// what clipping to the tile's frustum is for.
+// that the triangle has there (thesis, section 7.3.1.1), as the plane over the tile gives it, which
+// is what clipping to the tile's frustum is for.
 #include "primitive_tracer/cube.glsl"
 
 layout(std430, binding = 4) buffer Ranges { uint range_words[]; };  // as TileRange
@@ -84,7 +84,8 @@ bool place(uint primitive, uint view_number, out Placed placed, out ivec4 cells)
   vec3 normal = cross(e1, e2);
   vec3 normal_error = edge_error(e1, e2, vec3(0.0));
   float offset = dot(normal, p0);
-  float offset_slack = dot(normal_error, abs(p0)) + dot(abs(normal), 5e-7 * abs(p0) + position_error);
+  float offset_slack = dot(normal_error, abs(p0)) +
+                       dot(abs(normal), 5e-7 * abs(p0) + position_error);
   if (offset < 0.0) {
     normal = -normal;
     offset = -offset;

@@ -1,14 +1,16 @@
 // Sorts the entries of every node into buckets over depth, as many as its triangles deserve, one
 // behind the other, so that what a ray passes in a node is one run; and makes the node's mask.
 //
-// One invocation a node (CROWDED 0). Nodes with so many entries that one would take too long go to a
-// queue, and a work group sorts each of them (CROWDED 1).
+// One invocation a node (CROWDED 0), or for nodes with more than 512 entries a work group each
+// (CROWDED 1): with so many, one invocation would take too long, and far more would meet llvmpipe's
+// limit of iterations.
 #include "primitive_tracer/nodes.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = 1) uniform usamplerBuffer listed;  // as NodeEntry: reads are faster this way
 layout(std430, binding = 5) writeonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
+layout(std430, binding = 7) readonly buffer Order { uint order[]; };
 layout(location = 3) uniform uint buckets_per_triangle;
 
 #if CROWDED
@@ -20,9 +22,6 @@ shared uint bucket_counts[MOST_BUCKETS];
 #define WAIT memoryBarrier(); barrier();
 uint take(uint bucket) { return atomicAdd(bucket_counts[bucket], 1u); }
 #else
-// Entries of a node that one invocation sorts: all its loops together stay far below llvmpipe's
-// limit of iterations.
-const uint MOST_ENTRIES = 512u;
 uint bucket_counts[MOST_BUCKETS];
 #define FIRST 0u
 #define STRIDE 1u
@@ -120,23 +119,13 @@ void sort(uint node, uint start, uint end) {
 
 void main() {
 #if CROWDED
-  // The queue is that of large triangles, which have all been rasterised.
   uint i = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-  if (i >= min(counters.crowded, pool_sizes.y)) return;
-  uint node = blocks[i].primitive;
+  if (i >= counters.lists[CROWDED_LISTS]) return;
+  uint node = order[lists_before(CROWDED_LISTS) + i];
 #else
   uint i = spread_invocation();
-  if (i >= node_count()) return;
-  uint node = node_number(i);
+  if (i >= lists_before(CROWDED_LISTS)) return;
+  uint node = order[i];
 #endif
-  uint start = lists[node].start, end = min(lists[node].end, pool_sizes.x);
-#if !CROWDED
-  if (start >= end) return;
-  if (end - start > MOST_ENTRIES) {
-    uint place = atomicAdd(counters.crowded, 1u);
-    if (place < pool_sizes.y) blocks[place].primitive = node;
-    return;
-  }
-#endif
-  sort(node, start, end);
+  sort(node, lists[node].start, min(lists[node].end, pool_sizes.x));
 }

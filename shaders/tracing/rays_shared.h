@@ -30,7 +30,7 @@ SHARED_ASSERT_SIZE(TracedTriangle, 48)
 // lies in the same place.
 struct TracedRay {
   float origin_x, origin_y, origin_z;
-  float t_min;
+  float t_min;  // not negative
   float direction_x, direction_y, direction_z;  // of any length but zero; t counts in it
   float t_max;
   uint after;    // NO_PRIMITIVE: nothing at t_min itself

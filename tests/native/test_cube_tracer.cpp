@@ -1,5 +1,6 @@
-// The cube's own: settings, pools that grow, the single view, what rasterises, and what Algorithm 2 to
-// the letter loses. That hits are right is for the catalogue (test_ray_hard_cases.cpp) and Embree.
+// The cube's own: settings, pools that grow, the single view, what rasterises, and what Algorithm 2
+// to the letter loses. That hits are right is for the catalogue (test_ray_hard_cases.cpp) and
+// Embree.
 #include "base/error.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "rays/brute_force.h"
@@ -75,16 +76,24 @@ TEST(CubeTracer, SettingsChangeWorkAndNeverHits) {
   const std::vector<TracedHit> due = due_hits(rays);
   EXPECT_GT(count_met(due), rays.size() / 4);
   const glm::vec3 in_a_corner = corner(scene.triangles[0], 1);
-  for (const CubeSettings& settings : std::initializer_list<CubeSettings>{
-           {}, {.tiles = 1}, {.tiles = 100}, {.tiles = 4, .buckets_per_triangle = 8},
-           {.buckets_per_triangle = 0.1f}, {.hardware_raster = true}, {.centre = in_a_corner},
-           {.centre = glm::vec3(0)}, {.centre = glm::vec3(3, 0.5f, -1)}, {.linked_lists = true},
-           {.tiles = 1, .linked_lists = true, .buckets = 1},
-           {.tiles = 64, .linked_lists = true, .buckets = 255},
-           {.linked_lists = true, .centre = in_a_corner}}) {
-    SCOPED_TRACE(fmt::format("{} tiles, {}, {} or {} buckets, hardware {}, centre {}", settings.tiles,
-                             settings.linked_lists ? "linked" : "runs", settings.buckets,
-                             settings.buckets_per_triangle, settings.hardware_raster,
+  for (const CubeSettings& settings :
+       std::initializer_list<CubeSettings>{{},
+                                           {.tiles = 1},
+                                           {.tiles = 100},
+                                           {.tiles = 4, .buckets_per_triangle = 8},
+                                           {.buckets_per_triangle = 0.1f},
+                                           {.hardware_raster = true},
+                                           {.centre = in_a_corner},
+                                           {.centre = glm::vec3(0)},
+                                           {.centre = glm::vec3(3, 0.5f, -1)},
+                                           {.linked_lists = true},
+                                           {.tiles = 1, .linked_lists = true, .buckets = 1},
+                                           {.tiles = 64, .linked_lists = true, .buckets = 255},
+                                           {.linked_lists = true, .centre = in_a_corner}}) {
+    SCOPED_TRACE(fmt::format("{} tiles, {}, {} or {} buckets, hardware {}, centre {}",
+                             settings.tiles, settings.linked_lists ? "linked" : "runs",
+                             settings.buckets, settings.buckets_per_triangle,
+                             settings.hardware_raster,
                              settings.centre ? settings.centre->x : 0.0f));
     CubeTracer tracer(settings);
     EXPECT_EQ(count_different(hits_of(tracer, rays), due), 0u);
@@ -143,7 +152,8 @@ TEST(CubeTracer, ACrowdedTileIsSearchedToItsEnd) {
   add_box(scene.triangles, glm::vec3(-10), glm::vec3(10));
   for (int i = 0; i < 100'000; ++i) {
     const glm::vec3 p = glm::vec3(5, 0.2f, 0.3f) + random.in_box(glm::vec3(0), glm::vec3(1e-3f));
-    scene.triangles.push_back(make_triangle(p, p + glm::vec3(0, 1e-4f, 0), p + glm::vec3(0, 0, 1e-4f)));
+    scene.triangles.push_back(
+        make_triangle(p, p + glm::vec3(0, 1e-4f, 0), p + glm::vec3(0, 0, 1e-4f)));
   }
   scene.bounds = bounds_of(scene.triangles);
   std::vector<TracedRay> rays;

@@ -22,8 +22,11 @@ std::string describe(const Comparison& c) {
 
 class RaysAgainstEmbree : public ::testing::TestWithParam<std::string> {};
 
-// No difference is without an excuse by rounding, and rays that are not aimed at edges differ only
-// where chance put one within rounding of an edge: one of 20 000 is far more than was ever seen.
+// Rays of a set that is not aimed at edges, but come within rounding of one by chance. The blades of
+// grass have 48 km of edges over some 20 m2 of picture: float32 makes each 1e-6 m wide, .24 % in all.
+uint32_t near_edges(const std::string& scene) { return scene == "grass" ? 24 * kRays / 10'000 : 1; }
+
+// No difference is without an excuse by rounding.
 TEST_P(RaysAgainstEmbree, DifferOnlyByRounding) {
   const RayScene scene = generated_scene(GetParam());
   const EmbreeScene embree(scene.triangles);
@@ -44,7 +47,7 @@ TEST_P(RaysAgainstEmbree, DifferOnlyByRounding) {
       EXPECT_EQ(c.structural, 0u) << describe(c);
       EXPECT_EQ(c.of(Difference::kFirst), 0u) << describe(c);
       EXPECT_EQ(c.of(Difference::kBoth), 0u) << describe(c);
-      EXPECT_TRUE(set.aimed || c.mismatches <= 1) << describe(c);
+      EXPECT_TRUE(set.aimed || c.mismatches <= near_edges(scene.name)) << describe(c);
     }
   }
 }

@@ -1,7 +1,9 @@
 // Every permutation that native code can ask for: valid to the reference compiler, and accepted by
 // the driver at hand.
 #include "base/error.h"
+#include "bvh_tracer/bvh_tracer.h"
 #include "film/film.h"
+#include "primitive_tracer/orthographic_tracer.h"
 #include "gl/context.h"
 #include "gl/program.h"
 #include "primitive_tracer/cube_tracer.h"
@@ -137,6 +139,16 @@ class Shaders : public ::testing::Test {
       add(realtime::depth_program(film));
     }
 
+    const bvh_tracer::BvhTracer bvh(context->device());
+    const primitive_tracer::OrthographicTracer orthographic;
+    for (const gl::ProgramSource& source : primitive_tracer::orthographic_build_programs())
+      add(source);
+    using tracing::RaySource;
+    for (const tracing::Tracer* tracer : {(const tracing::Tracer*)&bvh, (const tracing::Tracer*)&orthographic})
+      for (int bits = 0; bits < 4; ++bits)
+        for (RaySource from : {RaySource::kAll, RaySource::kListed, RaySource::kResumed})
+          add(tracing::trace_program(
+              *tracer, {.any_hit = bool(bits & 1), .count_work = bool(bits & 2)}, from));
     for (int bits = 0; bits < 6; ++bits) {
       primitive_tracer::CubeSettings settings{.linked_lists = bits % 3 > 0,
                                               .thesis_rejection = bits % 3 > 1};
@@ -145,9 +157,8 @@ class Shaders : public ::testing::Test {
         add(std::move(source));
       const primitive_tracer::CubeTracer tracer(settings);
       for (bool any_hit : {false, true})
-        for (bool count_work : {false, true})
-          for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
-            add(tracing::trace_program(tracer, {any_hit, count_work}, from));
+        for (RaySource from : {RaySource::kAll, RaySource::kResumed})
+          add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));
     }
 
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {

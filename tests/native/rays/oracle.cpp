@@ -31,12 +31,18 @@ Meeting meet(const TracedRay& ray, uint32_t primitive, const TracedTriangle& tri
   const glm::dvec3 axis = d / length;
   const glm::dvec3 other = std::abs(axis.x) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 x = glm::normalize(glm::cross(axis, other)), y = glm::cross(axis, x);
+  const glm::dvec3 sizes = glm::abs(d);
+  const int major = sizes.z >= sizes.x && sizes.z >= sizes.y ? 2 : sizes.y >= sizes.x ? 1 : 0;
   glm::dvec3 p[3];
-  double reach = 0;
+  double reach = 0, nearest = kInfinity, farthest = -kInfinity;
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 offset = glm::dvec3(corner(triangle, k)) - origin;
     p[k] = {glm::dot(offset, x), glm::dot(offset, y), glm::dot(offset, axis)};
     reach = std::max(reach, largest(offset));
+    // Along the ray, and where watertight tests see the vertex: along the axis nearest to it.
+    const double along = offset[major] / axis[major];
+    nearest = std::min({nearest, p[k].z, along});
+    farthest = std::max({farthest, p[k].z, along});
   }
   if (!(reach < kInfinity)) return m;  // a vertex that is not finite
 
@@ -60,7 +66,6 @@ Meeting meet(const TracedRay& ray, uint32_t primitive, const TracedTriangle& tri
 
   const double whole = area[0] + area[1] + area[2];
   const double whole_error = error[0] + error[1] + error[2];
-  const double low = std::min({p[0].z, p[1].z, p[2].z}), high = std::max({p[0].z, p[1].z, p[2].z});
   if (std::abs(whole) > 2 * whole_error) {
     const double depth = (area[0] * p[0].z + area[1] * p[1].z + area[2] * p[2].z) / whole;
     double off = 0;
@@ -72,8 +77,8 @@ Meeting meet(const TracedRay& ray, uint32_t primitive, const TracedTriangle& tri
     m.t_error = (2 * (off + plane) / std::abs(whole) + kRoundings * kUnit * std::abs(depth)) / length;
   } else {
     // Seen so nearly edge-on that t may be anywhere along the triangle.
-    m.t = 0.5 * (low + high) / length;
-    m.t_error = (0.5 * (high - low) + kRoundings * kUnit * reach) / length;
+    m.t = 0.5 * (nearest + farthest) / length;
+    m.t_error = (0.5 * (farthest - nearest) + kRoundings * kUnit * reach) / length;
   }
 
   const bool starts_here = ray.after != shared::NO_PRIMITIVE && primitive > ray.after;

@@ -1,6 +1,7 @@
 #include "rays/tracers.h"
 
 #include "base/error.h"
+#include "bvh_tracer/bvh_tracer.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "rays/brute_force.h"
@@ -26,6 +27,10 @@ const std::vector<TracerEntry>& tracers() {
          return std::make_unique<primitive_tracer::CubeTracer>(
              primitive_tracer::CubeSettings{.linked_lists = true});
        }},
+      {"bvh",
+       [](const gl::DeviceInfo& device) {
+         return std::make_unique<bvh_tracer::BvhTracer>(device);
+       }},
   };
   return list;
 }
@@ -37,6 +42,20 @@ const TracerEntry& tracer_named(const std::string& name) {
     names.push_back(entry.name);
   }
   fail("there is no ray tracer '{}': choose one of {}", name, fmt::join(names, ", "));
+}
+
+std::vector<TracerVariant> tracer_variants() {
+  std::vector<TracerVariant> variants;
+  for (int tiles : {64, 128, 256})
+    for (int buckets : {1, 2, 4, 8}) {
+      primitive_tracer::OrthographicSettings settings;
+      settings.tiles = tiles;
+      settings.buckets_per_triangle = buckets;
+      variants.push_back({"orthographic", tiles, double(buckets), [settings] {
+                            return std::make_unique<primitive_tracer::OrthographicTracer>(settings);
+                          }});
+    }
+  return variants;
 }
 
 }  // namespace panoptes::test

@@ -21,4 +21,13 @@ const std::vector<TracerEntry>& tracers();
 // Throws Error, naming all, when there is none of that name.
 const TracerEntry& tracer_named(const std::string& name);
 
+// One setting of a structure that is made by rasterisation, to see what tiles and buckets cost.
+struct TracerVariant {
+  std::string tracer;
+  int tiles;        // along a side
+  double buckets;   // over depth: of a tile (linked lists), or for each triangle of one
+  std::function<std::unique_ptr<tracing::Tracer>()> make;
+};
+std::vector<TracerVariant> tracer_variants();
+
 }  // namespace panoptes::test
