@@ -20,7 +20,7 @@ const std::vector<TracerEntry>& tracers() {
   static const std::vector<TracerEntry> list = {
       {"brute force", make<BruteForceTracer>, true},
       {"orthographic", make<primitive_tracer::OrthographicTracer>},
-      {"bvh",
+      {"BVH2",
        [](const gl::DeviceInfo& device) {
          return std::make_unique<bvh_tracer::BvhTracer>(device);
        }},
