@@ -74,7 +74,7 @@ std::vector<Table> figure_7_8(TracingDevice& device, const BenchOptions& options
   std::vector<Table> tables;
   for (const std::string& name : options.scenes) {
     const RayScene scene = load_scene(name);
-    Table table{fmt::format("Figure 7.8, {}: {} triangles, ms a frame", name, scene.triangles.size()),
+    Table table{fmt::format("Figure 7.8, {}: {} triangles, ms a frame", scene.name, scene.triangles.size()),
                 {"tracer", "side", "build", "primary + shadow", "frame", "primary + diffuse", "frame",
                  "and 2 shadow", "frame"},
                 {}};
