@@ -83,7 +83,8 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
     debug_picture: EnumProperty(
         name='Debug Picture',
         description='Show rays at work in place of the scene. Numbers have the colours black 0, blue 3, '
-                    'cyan 15, green 63, yellow 255, red 1023 and white from 4095 on',
+                    'cyan 15, green 63, yellow 255, red 1023 and white from 4095 on, which the view '
+                    'transform Standard leaves as they are',
         items=(
             ('none', 'None', 'Show the scene'),
             ('steps', 'Steps', "Nodes or cells that a pixel's ray visits"),

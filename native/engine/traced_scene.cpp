@@ -19,7 +19,7 @@ void TracedScene::build(const std::string& tracer, gl::ProgramCache& programs,
                         gl::PassTimer& timer) {
   if (!tracer_ || name_ != tracer) {
     tracer_.reset();  // before the other takes its memory
-    tracer_ = make_tracer(tracer);
+    tracer_ = make_tracer(tracer, device_);
     name_ = tracer;
     built_ = false;
   }

@@ -1,6 +1,7 @@
 // Ray tracers by name.
 #pragma once
 
+#include "gl/context.h"
 #include "tracing/tracer.h"
 
 #include <memory>
@@ -8,7 +9,8 @@
 
 namespace panoptes::engine {
 
-// Throws Error when there is none of that name.
-std::unique_ptr<tracing::Tracer> make_tracer(std::string_view name);
+// "orthographic": the structure of primitive_tracer in one view; "bvh": the yardstick. Throws Error
+// when there is none of that name.
+std::unique_ptr<tracing::Tracer> make_tracer(std::string_view name, const gl::DeviceInfo& device);
 
 }  // namespace panoptes::engine

@@ -14,12 +14,6 @@ namespace {
 // Rays at a time: 80 bytes each.
 constexpr uint32_t kBatch = 1 << 20;
 
-void reserve(gl::Buffer& buffer, uint64_t bytes) {
-  if (buffer && buffer.bytes() >= int64_t(bytes)) return;
-  buffer = gl::Buffer();
-  buffer = gl::Buffer(int64_t(bytes));
-}
-
 }  // namespace
 
 gl::ProgramSource camera_rays_program() {
@@ -44,9 +38,9 @@ void RayPicture::render(const gpu_scene::Camera& camera, Kind kind, const tracin
                         const std::atomic<bool>& cancelled) {
   const uint32_t pixels = uint32_t(camera.width) * uint32_t(camera.height);
   const uint32_t most = std::min(pixels, kBatch);
-  reserve(rays_, most * sizeof(shared::TracedRay));
-  reserve(hits_, most * sizeof(shared::TracedHit));
-  reserve(work_, most * sizeof(shared::TracedWork));
+  rays_.reserve(most * int64_t(sizeof(shared::TracedRay)));
+  hits_.reserve(most * int64_t(sizeof(shared::TracedHit)));
+  work_.reserve(most * int64_t(sizeof(shared::TracedWork)));
   view_block_.set(gpu_scene::camera_view(camera, {0, 0}));
   const glm::vec3 origin = triangles.origin();
   const glm::vec2 depths(gpu_scene::clip_depths(camera));
