@@ -1,6 +1,8 @@
 // The pools that rasterisation fills: entries of cells, and blocks of large triangles.
-#include "base/invocation.glsl"
 #include "primitive_tracer/build_shared.h"
+#ifndef FRAGMENT_STAGE
+#include "base/invocation.glsl"
+#endif
 
 // Arrangements that rasterise twice define LISTED as 0, then as 1.
 #ifndef LISTED

@@ -4,6 +4,7 @@
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
+#include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
@@ -161,6 +162,17 @@ class Shaders : public ::testing::Test {
           for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kListed,
                             tracing::RaySource::kResumed})
             add(tracing::trace_program(*tracer, {bool(bits & 1), bool(bits & 2), surfaces}, from));
+    }
+    for (int bits = 0; bits < 6; ++bits) {
+      primitive_tracer::CubeSettings settings{.linked_lists = bits % 3 > 0,
+                                              .thesis_rejection = bits % 3 > 1};
+      if (bits >= 3) settings.single_view = primitive_tracer::SingleView{};
+      for (gl::ProgramSource& source : primitive_tracer::cube_build_programs(settings))
+        add(std::move(source));
+      const primitive_tracer::CubeTracer tracer(settings);
+      for (bool any_hit : {false, true})
+        for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
+          add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));
     }
 
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
