@@ -72,6 +72,18 @@ class PANOPTES_PT_sampling_limits(EnginePanel, bpy.types.Panel):
         column.prop(settings, 'force_all_effects')
 
 
+class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
+    """Pictures of what rays cost."""
+
+    bl_label = 'Debug'
+    bl_parent_id = 'PANOPTES_PT_sampling'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        """Draw the panel."""
+        self._column().prop(context.scene.panoptes, 'debug_picture')
+
+
 class PANOPTES_PT_shadows(EnginePanel, bpy.types.Panel):
     """Shadow maps of the Real-time method."""
 
@@ -176,5 +188,5 @@ class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
                 column.prop(context.view_layer, entry.switch)
 
 
-CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_shadows,
-           PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)
+CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_debug,
+           PANOPTES_PT_shadows, PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)

@@ -80,6 +80,19 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
         description='Run every effect, also those that the scene cannot show. The picture stays the '
                     'same, the time does not',
         default=False)
+    debug_picture: EnumProperty(
+        name='Debug Picture',
+        description='Show rays at work in place of the scene. Numbers have the colours black 0, blue 3, '
+                    'cyan 15, green 63, yellow 255, red 1023 and white from 4095 on, which the view '
+                    'transform Standard leaves as they are',
+        items=(
+            ('none', 'None', 'Show the scene'),
+            ('steps', 'Steps', "Nodes or cells that a pixel's ray visits"),
+            ('tests', 'Tests', "Triangles that a pixel's ray is tested with"),
+            ('lists', 'Lists', "Triangles in the longest list that a pixel's ray goes through"),
+            ('tiles', 'Tiles', "The cell in which a pixel's ray ends, each in a colour of its own"),
+        ),
+        default='none')
     realtime: PointerProperty(type=PanoptesRealtimeSettings)
     last_stats: StringProperty(
         name='Last Statistics', description='Statistics of the last final render, as JSON',

@@ -47,6 +47,8 @@ def _settings(scene):
         found['time_budget'] = settings.time_budget
     if settings.noise_threshold > 0.0:
         found['noise_threshold'] = settings.noise_threshold
+    if settings.debug_picture != 'none':
+        found['debug_picture'] = settings.debug_picture
     return found
 
 
@@ -72,6 +74,10 @@ def build(scene, size, samples, view, projection, passes, warn):
     if not (np.isfinite(view).all() and np.isfinite(projection).all()):
         raise BadRequest("The camera's place or lens is not a number; clear its transform or choose "
                          'another camera.')
+    settings = _settings(scene)
+    if 'debug_picture' in settings:
+        # It looks through the pixels' centres: another sample would be the same.
+        samples = (0, 1)
     return {
         'width': width,
         'height': height,
@@ -84,7 +90,7 @@ def build(scene, size, samples, view, projection, passes, warn):
         'filter_width': _filter_width(scene.render, warn),
         'exposure': scene.panoptes.exposure,
         'force_all_effects': scene.panoptes.force_all_effects,
-        'settings': _settings(scene),
+        'settings': settings,
     }
 
 

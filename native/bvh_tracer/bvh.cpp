@@ -56,14 +56,18 @@ class Builder {
       : references_(std::move(references)),
         nodes_(std::make_unique_for_overwrite<Bvh::Node[]>(references_.size())),
         used_(references_.size()),
-        threads_(threads) {}
+        threads_(threads) {
+    // Waiting ranges overlap nowhere: with room for all, no thread runs out of memory.
+    tasks_.reserve(references_.size() / kSerial + 1);
+  }
 
   Bvh build(const Range& all) {
     const int32_t root = child(all, 0, 1);
+    const size_t most_helpers = tasks_.empty() || threads_ < 2 ? 0 : threads_ - 1;
     std::vector<std::thread> helpers;
+    helpers.reserve(most_helpers);
     try {
-      while (!tasks_.empty() && helpers.size() + 1 < threads_)
-        helpers.emplace_back([this] { work(); });
+      while (helpers.size() < most_helpers) helpers.emplace_back([this] { work(); });
     } catch (const std::system_error&) {  // no more threads to be had: fewer do it too
     }
     work();

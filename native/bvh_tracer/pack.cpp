@@ -21,20 +21,23 @@ scene::Bounds with_room(const scene::Bounds& bounds) {
 constexpr double kMargin = 0x1p-10;
 
 struct Grid {
-  float origin;
-  int exponent;  // biased
+  double origin, planes_per_metre;
+  uint32_t exponent;  // biased
 
-  Grid(float low, float high)
-      : origin(low), exponent(std::clamp(smallest(double(high) - low) + 127, 1, 254)) {}
-  // The least power of two in which `extent` and a margin are 255 steps at most.
-  static int smallest(double extent) {
-    int exponent;
-    std::frexp(extent / (255 - 2 * kMargin), &exponent);
-    return exponent;
+  Grid(float low, float high) : origin(low) {
+    // The least power of two by which the extent, and a margin, is 255 steps at most.
+    int power;
+    std::frexp(std::max(high - origin, 0x1p-126) / (255 - 2 * kMargin), &power);
+    power = std::clamp(power, -126, 127);
+    exponent = uint32_t(power + 127);
+    planes_per_metre = std::ldexp(1.0, -power);
   }
-  double steps(float x) const { return std::ldexp(double(x) - origin, 127 - exponent); }
-  uint32_t below(float x) const { return uint32_t(std::max(std::floor(steps(x) - kMargin), 0.0)); }
-  uint32_t above(float x) const { return uint32_t(std::min(std::ceil(steps(x) + kMargin), 255.0)); }
+  uint32_t below(float x) const {
+    return uint32_t(std::max((x - origin) * planes_per_metre - kMargin, 0.0));
+  }
+  uint32_t above(float x) const {
+    return uint32_t((x - origin) * planes_per_metre + kMargin) + 1;
+  }
 };
 
 struct Child {
@@ -54,7 +57,7 @@ BvhNode pack(const Bvh::Node& node) {
   uint32_t planes[3], grid = child0.code() << 24 | child1.code() << 28;
   for (int axis = 0; axis < 3; ++axis) {
     const Grid along(low[axis], high[axis]);
-    grid |= uint32_t(along.exponent) << (8 * axis);
+    grid |= along.exponent << (8 * axis);
     planes[axis] = along.below(box0.low[axis]) | along.above(box0.high[axis]) << 8 |
                    along.below(box1.low[axis]) << 16 | along.above(box1.high[axis]) << 24;
   }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <vector>
 
 namespace {
@@ -16,12 +17,13 @@ using panoptes::fail;
 
 constexpr const char* kUsage =
     "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
-    "                       [--repeat N] [--software]\n";
+    "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n";
 
 struct Arguments {
   std::string scene, output, stats;
   int width = 0, height = 0, samples = 0, repeat = 1;
   bool software = false;
+  std::optional<panoptes::ray_picture::Kind> debug;
 };
 
 int positive(const std::string& option, const std::string& text) {
@@ -49,7 +51,12 @@ Arguments parse(const std::vector<std::string>& words) {
     else if (word == "--samples") a.samples = positive(word, value());
     else if (word == "--repeat") a.repeat = positive(word, value());
     else if (word == "--software") a.software = true;
-    else if (word == "--size") {
+    else if (word == "--debug") {
+      a.debug = panoptes::ray_picture::find_kind(value());
+      if (!panoptes::ray_picture::known(*a.debug))
+        fail("--debug takes one of {}, not '{}': see --help",
+             fmt::join(panoptes::ray_picture::kKindNames, ", "), words[i]);
+    } else if (word == "--size") {
       const std::string& size = value();
       const size_t x = size.find('x');
       if (x == std::string::npos) fail("--size takes WxH, not '{}': see --help", size);
@@ -89,6 +96,7 @@ void run(const Arguments& arguments) {
     request.camera.height = arguments.height;
   }
   request.passes.set(size_t(panoptes::film::Pass::kCombined));
+  request.debug_picture = arguments.debug.value_or(request.debug_picture);
   for (int i = 0; i < arguments.repeat; ++i) {
     const auto job = engine.render(request);
     while (!job->wait(0.1)) {

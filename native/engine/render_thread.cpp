@@ -1,5 +1,6 @@
 #include "engine/render_thread.h"
 
+#include "base/cancelled.h"
 #include "base/error.h"
 #include "gl/counters.h"
 #include "plan/plan.h"
@@ -21,6 +22,13 @@ double ms_since(Clock::time_point start) {
 constexpr double kLiveIntervalMs = 100;
 // The estimated error needs a copy of the film: look at it every so many samples.
 constexpr uint32_t kErrorInterval = 4;
+// Of those that make_tracer() knows.
+constexpr const char* kTracer = "orthographic";
+
+// The passes of an effect have its name, or begin with it: "structure_lists".
+bool belongs(const std::string& pass, const std::string& effect) {
+  return pass == effect || pass.starts_with(effect + '_');
+}
 
 std::vector<EffectReport> report(const plan::Effects& plan,
                                  const std::vector<gl::PassTime>& times) {
@@ -28,7 +36,7 @@ std::vector<EffectReport> report(const plan::Effects& plan,
   for (const plan::Effect& effect : plan) {
     EffectReport r{effect, 0};
     for (const gl::PassTime& time : times)
-      if (time.name == effect.name) r.ms += time.ms;
+      if (belongs(time.name, effect.name)) r.ms += time.ms;
     effects.push_back(std::move(r));
   }
   return effects;
@@ -38,13 +46,13 @@ std::vector<EffectReport> report(const plan::Effects& plan,
 
 RenderThread::RenderThread(const gl::ContextOptions& options)
     : context_(options), timer_(context_.device()), gpu_scene_(context_.device()),
-      realtime_(context_.device(), programs_, timer_) {}
+      realtime_(context_.device(), programs_, timer_), traced_(context_.device()) {}
 
 void RenderThread::render(Job& job, scene::Scene& scene, std::mutex& mutex) {
   std::string error;
   try {
     if (!job.cancelled()) render_frame(job, scene, mutex);
-  } catch (const realtime::Cancelled&) {
+  } catch (const Cancelled&) {
   } catch (const std::bad_alloc&) {
     error = "the computer ran out of memory: lower the resolution or simplify the scene";
   } catch (const std::exception& e) {
@@ -63,10 +71,45 @@ bool RenderThread::upload_ahead(scene::Scene& scene, std::mutex& mutex) {
 }
 
 void RenderThread::publish(Job& job, const film::PassSet& passes, uint32_t samples) {
+  const RenderRequest& request = job.request();
+  // False colours are to be read by their scale.
+  const bool light = request.debug_picture == ray_picture::Kind::kNone;
   for (int i = 0; i < film::kPassCount; ++i)
     if (passes[size_t(i)])
       job.publish(film::Pass(i),
-                  film_.read(film::Pass(i), int(samples), job.request().exposure), samples);
+                  film_.read(film::Pass(i), int(samples), light ? request.exposure : 1.0f),
+                  samples);
+}
+
+void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effects& plan,
+                                  scene::Scene& scene) {
+  traced_.release();
+  ray_picture_.release();
+  realtime::Settings settings;
+  settings.shadows.resolution = request.shadow_resolution;
+  settings.seed = request.seed;
+  settings.transparent_film = request.transparent_film;
+  settings.filter_width = request.filter_width;
+  const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
+  gpu_scene_.check_programs(
+      [&](const gpu_scene::GpuMaterial& material) {
+        programs_.get(rasterize::surface_program(material, surfaces));
+      },
+      [&](const gpu_scene::GpuShading& world) {
+        programs_.get(realtime::background_program(world));
+      });
+  // Samples that come after others are part of a picture of many, even if only one is asked for.
+  realtime_.begin(request.camera, plan, settings, request.last_sample == 1, scene, gpu_scene_);
+}
+
+void RenderThread::render_sample(const Job& job, uint32_t index) {
+  const RenderRequest& request = job.request();
+  if (request.debug_picture == ray_picture::Kind::kNone)
+    realtime_.render_sample(index, request.first_sample, request.last_sample, gpu_scene_, film_,
+                            job.cancelled_);
+  else
+    ray_picture_.render(request.camera, request.debug_picture, traced_.tracer(),
+                        traced_.triangles(), film_, programs_, timer_, job.cancelled_);
 }
 
 void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex) {
@@ -77,8 +120,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   // Take over what changed. The plan is made from the same state of the scene.
   job.set_status("uploading the scene", 0);
   const uint32_t wanted = request.last_sample - request.first_sample;
-  // Samples that come after others are part of a picture of many, even if only one is asked for.
-  const bool single = request.last_sample == 1;
+  const bool debug = request.debug_picture != ray_picture::Kind::kNone;
   plan::Effects plan;
   std::vector<std::string> warnings;
   {
@@ -86,28 +128,23 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     gpu_scene_.update(scene);
     plan = plan::make_plan(scene.facts(), {int(request.last_sample), request.soft_shadows,
                                            request.filter_penumbrae, request.force_all_effects,
-                                           request.passes});
+                                           request.passes, request.debug_picture});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
-    film_.start(request.camera.width, request.camera.height, passes, wanted > 1);
-    realtime::Settings settings;
-    settings.shadows.resolution = request.shadow_resolution;
-    settings.seed = request.seed;
-    settings.transparent_film = request.transparent_film;
-    settings.filter_width = request.filter_width;
-    job.set_status("compiling shaders", 0);
-    const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
-    gpu_scene_.check_programs(
-        [&](const gpu_scene::GpuMaterial& material) {
-          programs_.get(rasterize::surface_program(material, surfaces));
-        },
-        [&](const gpu_scene::GpuShading& world) {
-          programs_.get(realtime::background_program(world));
-        });
-    realtime_.begin(request.camera, plan, settings, single, scene, gpu_scene_);
+    film_.start(request.camera.width, request.camera.height, passes, wanted > 1 && !debug);
+    job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
+    if (debug)
+      traced_.update(scene, gpu_scene_, programs_, timer_);
+    else
+      begin_realtime(request, plan, scene);
     warnings = scene.warnings();
   }
+  if (debug) {
+    job.set_status("building the structure for rays", 0);
+    traced_.build(kTracer, programs_, timer_);
+  }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);
+  for (const std::string& warning : traced_.warnings()) warnings.push_back(warning);
   glFinish();
   gl::check_errors("upload");
   const double build_ms = ms_since(start);
@@ -117,8 +154,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   uint32_t done = 0;
   while (done < wanted) {
     job.set_status(fmt::format("sample {} of {}", done + 1, wanted), float(done) / float(wanted));
-    realtime_.render_sample(request.first_sample + done, request.first_sample, request.last_sample,
-                            gpu_scene_, film_, job.cancelled_);
+    render_sample(job, request.first_sample + done);
     ++done;
     gl::check_errors("render");
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
@@ -149,6 +185,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
   stats.build_ms = build_ms;
   stats.total_ms = ms_since(start);
+  if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
   stats.estimated_error = film_.estimated_error(int(done));
   stats.warnings = std::move(warnings);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "engine/engine.h"
+#include "engine/traced_scene.h"
 #include "film/film.h"
 #include "gl/pass_timer.h"
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
+#include "ray_picture/ray_picture.h"
 #include "realtime/realtime.h"
 
 #include <mutex>
@@ -25,6 +27,9 @@ class RenderThread {
 
  private:
   void render_frame(Job& job, scene::Scene& scene, std::mutex& mutex);
+  // Prepares for a frame that shows the scene, and frees what rays need.
+  void begin_realtime(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
+  void render_sample(const Job& job, uint32_t index);
   void publish(Job& job, const film::PassSet& passes, uint32_t samples);
 
   // Declared first, destroyed last: everything below holds GL objects.
@@ -34,6 +39,8 @@ class RenderThread {
   gpu_scene::GpuScene gpu_scene_;
   film::Film film_;
   realtime::Realtime realtime_;
+  TracedScene traced_;
+  ray_picture::RayPicture ray_picture_;
 };
 
 }  // namespace panoptes::engine

@@ -45,6 +45,9 @@ void RenderRequest::check() const {
   if (!std::isfinite(exposure)) fail("the film's exposure is not finite: set it to 1");
   if (!(time_budget >= 0) || !(noise_threshold >= 0))
     fail("time budget and noise threshold must not be negative: set them to 0 to switch them off");
+  if (!ray_picture::known(debug_picture))
+    fail("there is no debug picture number {}: choose one of {}", int(debug_picture),
+         fmt::join(ray_picture::kKindNames, ", "));
 }
 
 std::string RenderStats::to_json() const {

@@ -4,6 +4,7 @@
 #include "film/passes.h"
 #include "gpu_scene/view.h"
 #include "plan/effect.h"
+#include "ray_picture/kind.h"
 
 #include <cstdint>
 #include <optional>
@@ -27,6 +28,8 @@ struct RenderRequest {
   bool transparent_film = false;  // Combined's alpha is 0 where the world is seen
   double time_budget = 0;       // s; 0: none. At least one sample is rendered.
   double noise_threshold = 0;   // relative; 0: none
+  // Shows rays at work in place of the scene, in Combined; other passes stay 0.
+  ray_picture::Kind debug_picture = ray_picture::Kind::kNone;
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;

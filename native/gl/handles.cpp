@@ -68,6 +68,13 @@ Buffer::~Buffer() {
   counters().freed(bytes_);
 }
 
+bool Buffer::reserve(int64_t bytes) {
+  if (id_ && bytes_ >= bytes) return false;
+  *this = Buffer();
+  *this = Buffer(bytes);
+  return true;
+}
+
 void Buffer::write(int64_t offset, int64_t bytes, const void* data) {
   if (bytes <= 0) return;
   glNamedBufferSubData(id_, offset, bytes, data);

@@ -52,6 +52,9 @@ class Buffer : public Handle {
   }
   ~Buffer();
 
+  // Makes it at least so large; what it held is lost when it grows, and freed before the new storage
+  // is taken. True if it has grown.
+  bool reserve(int64_t bytes);
   void write(int64_t offset, int64_t bytes, const void* data);
   void clear();  // to zero bits
   void read(int64_t offset, int64_t bytes, void* data) const;

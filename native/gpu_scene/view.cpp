@@ -76,6 +76,15 @@ void Camera::check(int max_size) const {
     fail("the camera's lens or scale is degenerate: check its focal length, scale and constraints");
 }
 
+glm::dvec2 clip_depths(const Camera& camera) {
+  const glm::dmat4& p = camera.projection;  // p[column][row]
+  glm::dvec2 depths = camera.perspective()
+                          ? glm::dvec2(p[3][2] / (p[2][2] - 1.0), p[3][2] / (p[2][2] + 1.0))
+                          : glm::dvec2((p[3][2] + 1.0) / p[2][2], (p[3][2] - 1.0) / p[2][2]);
+  if (!std::isfinite(depths.y) || depths.y <= depths.x) depths.y = depths.x * 1e7 + 1.0;
+  return depths;
+}
+
 shared::View camera_view(const Camera& camera, glm::dvec2 jitter) {
   const glm::dmat4 world = glm::inverse(camera.world_to_camera);
   const glm::dmat4& p = camera.projection;  // p[column][row]
@@ -84,18 +93,10 @@ shared::View camera_view(const Camera& camera, glm::dvec2 jitter) {
   glm::dvec2 center = perspective ? glm::dvec2(p[2][0], p[2][1]) * half
                                   : -glm::dvec2(p[3][0], p[3][1]) * half;
   center += jitter * 2.0 * half / glm::dvec2(camera.width, camera.height);
-  double near_depth, far_depth;
-  if (perspective) {
-    near_depth = p[3][2] / (p[2][2] - 1.0);
-    far_depth = p[3][2] / (p[2][2] + 1.0);
-  } else {
-    near_depth = (p[3][2] + 1.0) / p[2][2];
-    far_depth = (p[3][2] - 1.0) / p[2][2];
-  }
-  if (!std::isfinite(far_depth) || far_depth <= near_depth) far_depth = near_depth * 1e7 + 1.0;
+  const glm::dvec2 depths = clip_depths(camera);
   return make_view(glm::dvec3(world[3]), glm::normalize(glm::dvec3(world[0])),
                    glm::normalize(glm::dvec3(world[1])), -glm::normalize(glm::dvec3(world[2])),
-                   center, half, near_depth, far_depth, perspective, camera.width, camera.height);
+                   center, half, depths.x, depths.y, perspective, camera.width, camera.height);
 }
 
 shared::View light_view(const LightView& l, int resolution) {

@@ -18,6 +18,9 @@ struct Camera {
   bool perspective() const { return projection[3][3] == 0.0; }
 };
 
+// Depths of a camera's near and far plane, metres along its axis.
+glm::dvec2 clip_depths(const Camera& camera);
+
 // The camera's view of one sample. `jitter` moves the image by a part of a pixel.
 shared::View camera_view(const Camera& camera, glm::dvec2 jitter);
 

@@ -2,6 +2,7 @@
 
 #include "film/decide.h"
 #include "rasterize/decide.h"
+#include "ray_picture/decide.h"
 #include "realtime/decide.h"
 
 namespace panoptes::plan {
@@ -12,6 +13,11 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     all.insert(all.end(), std::make_move_iterator(part.begin()),
                std::make_move_iterator(part.end()));
   };
+  if (settings.debug_picture != ray_picture::Kind::kNone) {
+    append(ray_picture::decide(facts, settings.debug_picture));
+    append(film::decide(settings.passes));
+    return all;
+  }
   append(rasterize::decide(facts, {settings.samples, settings.soft_shadows,
                                     settings.filter_penumbrae}));
   append(realtime::decide(facts));

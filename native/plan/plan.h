@@ -3,6 +3,7 @@
 
 #include "film/passes.h"
 #include "plan/effect.h"
+#include "ray_picture/kind.h"
 #include "scene/scene.h"
 
 namespace panoptes::plan {
@@ -13,6 +14,7 @@ struct PlanSettings {
   bool filter_penumbrae = false;   // by blocker distance, instead of a point of each lamp a sample
   bool force_all_effects = false;  // runs what the scene cannot show too; the picture stays the same
   film::PassSet passes;
+  ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
 };
 
 Effects make_plan(const scene::Facts& facts, const PlanSettings& settings);

@@ -12,7 +12,7 @@ namespace panoptes::primitive_tracer {
 
 namespace {
 
-constexpr int kMostTiles = 1024, kMostDivisions = 3;
+constexpr int kMostTiles = 1024, kMostDivisions = 4;
 
 // Entries that a build may have at all: 1 GiB of them.
 constexpr uint32_t kMostEntries = 1u << 27;

@@ -13,14 +13,14 @@ struct OrthographicSettings {
   // number of triangles: about one tile for each eight of them was fastest (128 for 206 k
   // triangles).
   int tiles = 0;
-  // Most times that a crowded tile is halved, 0 .. 3. Twice (4x4 parts) trades the fewest tests for
-  // the fewest steps of diffuse rays; three times costs more to build than it gains.
-  int divisions = 2;
-  // Triangles that a part of a divided tile should hold at most.
-  int triangles_a_part = 8;
-  // Buckets over depth for each triangle of a node, up to 256. Four instead of two save a seventh
-  // of the tests for a third more memory and no time to speak of.
-  int buckets_per_triangle = 4;
+  // Most times that a crowded tile is halved, 0 .. 4. Twice (4x4 parts) is what most scenes want; a
+  // small object of many triangles in a large scene wants more.
+  int divisions = 4;
+  // Triangles that a part of a divided tile should hold at most. Fewer cost more to build than they
+  // save rays.
+  int triangles_a_part = 16;
+  // Buckets over depth for each triangle of a node, up to 256. More save few tests and cost memory.
+  int buckets_per_triangle = 2;
 };
 
 // One camera's frustum in place of the cube's six faces; positions relative to the list's origin.

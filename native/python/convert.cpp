@@ -129,7 +129,8 @@ engine::RenderRequest request(const py::dict& dict) {
   // Part of the add-on's stable settings; direct light has no bounces to count.
   static const std::set<std::string> known{"shadow_resolution", "soft_shadows",
                                            "filter_penumbrae", "time_budget",
-                                           "noise_threshold", "bounces", "film_transparent"};
+                                           "noise_threshold", "bounces", "film_transparent",
+                                           "debug_picture"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -139,6 +140,11 @@ engine::RenderRequest request(const py::dict& dict) {
   r.transparent_film = get(settings, "film_transparent", false);
   r.time_budget = get(settings, "time_budget", 0.0);
   r.noise_threshold = get(settings, "noise_threshold", 0.0);
+  const auto debug_picture = get<std::string>(settings, "debug_picture", "none");
+  r.debug_picture = ray_picture::find_kind(debug_picture);
+  if (!ray_picture::known(r.debug_picture))
+    fail("there is no debug picture '{}': choose one of {}", debug_picture,
+         fmt::join(ray_picture::kKindNames, ", "));
   return r;
 }
 

@@ -18,10 +18,6 @@ constexpr float kCutAlpha = 0.5f;
 // Dimensions of the sample sequences: the pixel's, that of glowing surfaces, then two a lamp.
 constexpr uint32_t kPixelDimension = 0, kEmitterDimension = 1, kLampDimension = 2;
 
-void stop_if(const std::atomic<bool>& cancelled) {
-  if (cancelled) throw Cancelled{};
-}
-
 void clear(const gl::Texture& texture) {
   const float zero[4] = {0, 0, 0, 0};
   glClearTexImage(texture.id(), 0, GL_RGBA, GL_FLOAT, zero);

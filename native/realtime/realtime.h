@@ -3,6 +3,7 @@
 // left a first surface is missing, and glass and mirrors see the blurred world.
 #pragma once
 
+#include "base/cancelled.h"
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/pass_timer.h"
@@ -43,9 +44,6 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
 gl::ProgramSource depth_program(const film::Film& film);
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world);
 gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world);
-
-// Thrown between passes when the frame is no longer wanted.
-struct Cancelled {};
 
 class Realtime {
  public:

@@ -23,12 +23,6 @@ void bind(unsigned binding, const gl::Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id());
 }
 
-void reserve(gl::Buffer& buffer, uint64_t words) {
-  if (buffer && buffer.bytes() >= int64_t(words) * 4) return;
-  buffer = gl::Buffer();
-  buffer = gl::Buffer(int64_t(words) * 4);
-}
-
 uint32_t read_word(const gl::Buffer& buffer) {
   uint32_t word = 0;
   buffer.read(0, 4, &word);
@@ -82,7 +76,7 @@ void OpacityWaves::trace(const Tracer& tracer, const TriangleList& triangles,
                     mode != OpacityMode::kClosest, count_work, programs};
   const bool alpha = std::any_of(scene.materials().begin(), scene.materials().end(),
                                  [](const auto& material) { return material.facts.alpha; });
-  if (!counter_ && (alpha || frame.transmittance)) counter_ = gl::Buffer(4);
+  if (alpha || frame.transmittance) counter_.reserve(4);
 
   // What an opaque surface blocks anyhow need not be followed through others.
   run_waves(frame, alpha && frame.any_hit ? Surfaces::kOpaque : Surfaces::kAll, batch.count,
@@ -123,7 +117,7 @@ void OpacityWaves::run_waves(const Frame& frame, Surfaces surfaces, uint32_t cou
 
 uint32_t OpacityWaves::list_open(const Frame& frame) {
   const RayBatch& batch = frame.batch;
-  reserve(list_, batch.count);
+  list_.reserve(int64_t(batch.count) * 4);
   counter_.clear();
   frame.programs.get(open_rays_program(batch.listed != nullptr, frame.transmittance)).use();
   bind(kHits, *batch.hits);
@@ -139,8 +133,8 @@ uint32_t OpacityWaves::list_open(const Frame& frame) {
 std::vector<uint32_t> OpacityWaves::sort(const Frame& frame, uint32_t count,
                                          const gl::Buffer* listed) {
   const size_t materials = frame.scene.materials().size();
-  reserve(bins_, materials);
-  reserve(sorted_, count);
+  bins_.reserve(int64_t(materials) * 4);
+  sorted_.reserve(int64_t(count) * 4);
   const auto pass = [&](bool placed) {
     frame.programs.get(opacity_sort_program(listed != nullptr, placed)).use();
     frame.triangles.texture().bind(gpu_scene::kFreeUnit);
@@ -166,7 +160,7 @@ std::vector<uint32_t> OpacityWaves::sort(const Frame& frame, uint32_t count,
 uint32_t OpacityWaves::decide(const Frame& frame, const std::vector<uint32_t>& bins) {
   const uint32_t total = std::accumulate(bins.begin(), bins.end(), 0u);
   if (total == 0) return 0;
-  reserve(list_, total);
+  list_.reserve(int64_t(total) * 4);
   counter_.clear();
   uint32_t first = 0;
   for (size_t m = 0; m < bins.size(); first += bins[m++]) {

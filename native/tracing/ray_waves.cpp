@@ -30,11 +30,11 @@ void RayWaves::trace(const Tracer& tracer, const TriangleList& triangles, const 
                      const TraceOptions& options, gl::ProgramCache& programs, int budget) {
   dispatches_ = 0;
   if (batch.count == 0) return;
-  if (!counter_) counter_ = gl::Buffer(16);
+  counter_.reserve(4);
   const int64_t record = 4 * (5 + int64_t(tracer.traversal_words()));
   const gl::Texture rays(GL_RGBA32F, *batch.rays);
   const auto reserve = [&](gl::Buffer& pending, uint32_t rays_waiting) {
-    if (pending.bytes() < rays_waiting * record) pending = gl::Buffer(rays_waiting * record);
+    pending.reserve(rays_waiting * record);
   };
   const auto run = [&](RaySource source, uint32_t count, const gl::Buffer* from, gl::Buffer& to) {
     programs.get(trace_program(tracer, options, source)).use();

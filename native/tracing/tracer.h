@@ -11,12 +11,12 @@
 //     Traversal traversal_load(Ray ray, uint word);     by get_word(word + i), with RESUMED 1 only
 //
 // traverse() looks for what `ray` meets before hit.t, by intersect() of tracing/intersect.glsl, which
-// keeps the closest (with ANY_HIT 1: whatever is met ends the search). It returns true when it is
-// through, and false after about `budget` iterations of all its loops together: the ray is then
-// saved and goes on in another dispatch, since llvmpipe cuts an invocation off after 65 535
-// iterations and no dispatch may hold up a GPU. It
-// says COUNT_STEP for each node or cell and COUNT_LIST(cell, length) for each list, which count with
-// COUNT_WORK 1 only.
+// keeps the closest (with ANY_HIT 1: whatever is met ends the search); by intersect_corners() if the
+// structure has triangles of its own. It returns true when it is through, and false after about
+// `budget` iterations of all its loops together: the ray is then saved and goes on in another
+// dispatch, since llvmpipe cuts an invocation off after 65 535 iterations and no dispatch may hold up
+// a GPU. It says COUNT_STEP for each node or cell and COUNT_LIST(cell, length) for each list, which
+// count with COUNT_WORK 1 only.
 #pragma once
 
 #include "gl/pass_timer.h"

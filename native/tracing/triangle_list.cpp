@@ -85,14 +85,11 @@ bool TriangleList::update(const scene::Scene& scene, const gpu_scene::GpuScene& 
 void TriangleList::flatten(const std::vector<shared::TriangleSpan>& spans,
                            const gpu_scene::GpuScene& gpu, gl::ProgramCache& programs) {
   const int64_t bytes = int64_t(spans.size() * sizeof(shared::TriangleSpan));
-  if (spans_.bytes() < bytes) {
-    spans_ = gl::Buffer();
-    spans_ = gl::Buffer(bytes + bytes / 4);
-  }
+  spans_.reserve(bytes);
   spans_.write(0, bytes, spans.data());
   const gl::Texture span_texture(GL_RGBA32UI, spans_);
   shared::FlattenSummary summary{glm::uvec4(~0u), glm::uvec4(0), 0, 0, 0, 0};
-  if (!summary_) summary_ = gl::Buffer(sizeof summary);
+  summary_.reserve(sizeof summary);
   summary_.write(0, sizeof summary, &summary);
 
   programs.get(flatten_program()).use();

@@ -7,11 +7,15 @@ layout(std430, binding = 3) writeonly buffer Nodes { uvec4 nodes[]; };
 layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 layout(location = 3) uniform uvec2 division;  // triangles that a part should hold; most levels
 
+// Triangles from which on a tile is divided once more. From the third time on twice as many a part:
+// finer parts cost more to build, which only a crowd pays back.
+uint crowd(uint levels) { return division.x << (2u * levels + (levels >= 2u ? levels - 1u : 0u)); }
+
 void main() {
   if (invocation() >= list_sizes.x) return;
   uint tile = uint(box.grid.w) + invocation();
   uint count = lists[tile].start, levels = 0u;
-  while (levels < division.y && count > division.x << (2u * levels)) ++levels;
+  while (levels < division.y && count > crowd(levels)) ++levels;
 
   uint first = 0u;
   if (levels > 0u) {

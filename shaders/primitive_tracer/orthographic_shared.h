@@ -21,12 +21,12 @@ const uint MASK_SHIFT = DEPTH_BITS - 6u;
 // A node of the pyramid, of a tile, or of a part of a tile is a uvec4: its mask in x and y. Those
 // that triangles are listed in have
 //     z   where the offsets of its buckets begin
-//     w   bits 2..6: shift from depths to buckets; bits 7..14: buckets - 1; above: first bucket
+//     w   bits 3..7: shift from depths to buckets; bits 8..15: buckets - 1; above: first bucket
 // and a tile that is divided into 2^k x 2^k parts has z: its first part and w: k.
-const uint NODE_LEVELS = 3u;
-const uint NODE_SHIFT = 2u;
-const uint NODE_BUCKETS = 7u;
-const uint NODE_FIRST = 15u;
+const uint NODE_LEVELS = 7u;
+const uint NODE_SHIFT = 3u;
+const uint NODE_BUCKETS = 8u;
+const uint NODE_FIRST = 16u;
 const uint MOST_BUCKETS = 256u;
 
 // The triangles that cross a node, while it is built: first counted, then listed as entries from

@@ -127,5 +127,7 @@ void main() {
   if (i >= lists_before(CROWDED_LISTS)) return;
   uint node = order[i];
 #endif
-  sort(node, lists[node].start, min(lists[node].end, pool_sizes.x));
+  // Lists that found no room in the pool are cut off: the host makes room and starts again.
+  uint start = lists[node].start, end = min(lists[node].end, pool_sizes.x);
+  if (start < end) sort(node, start, end);
 }

@@ -60,6 +60,11 @@ def test_turned_view_redraws(shown):
     assert shown['turned'][2] > shown['turned'][0]
 
 
+def test_debug_picture_replaces_the_scene_while_asked_for(shown):
+    assert shown['debug'][:3] != pytest.approx(shown['turned'][:3], abs=1e-2)
+    assert shown['no debug'] == pytest.approx(shown['turned'], abs=1e-6)
+
+
 def test_final_render_beside_the_viewport(shown):
     assert shown['final'] == [64, 48]
 

@@ -50,6 +50,12 @@ def turn_view():
     area('VIEW_3D').spaces[0].region_3d.view_rotation = (1.0, 0.0, 0.0, 0.0)
 
 
+def show_debug_picture(kind):
+    bpy.context.scene.panoptes.debug_picture = kind
+    # Blender does this itself when the artist chooses in the panel, but not for scripts.
+    area('VIEW_3D').tag_redraw()
+
+
 def final_render():
     session.start_final()
     bpy.ops.render.render('INVOKE_DEFAULT')
@@ -83,6 +89,8 @@ def other_shading():
 
 
 run([('start', start, picture), ('world', edit_world, picture), ('plane', add_plane, picture),
-     ('turned', turn_view, picture), ('final', final_render, final_result),
+     ('turned', turn_view, picture), ('debug', lambda: show_debug_picture('tiles'), picture),
+     ('no debug', lambda: show_debug_picture('none'), picture),
+     ('final', final_render, final_result),
      ('without engine', take_engine_away, failure), ('again', bring_engine_back, picture),
      ('solid', other_shading, nothing)])

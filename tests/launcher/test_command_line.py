@@ -48,6 +48,17 @@ def test_a_missing_file_is_told_before_anything_is_built(fresh_checkout):
     assert not (fresh_checkout.root / "build").exists()
 
 
+@pytest.mark.parametrize("arguments, words", [
+    (("--scene", "gone.blend"), ("there is no file gone.blend",)),
+    (("--rays", "5", "--scene"), ("--scene needs a value",)),
+    (("--deform", "--scene", "a.blend", "--frames", "7"), ("--frames", "FIRST:LAST")),
+])
+def test_mistakes_with_the_ray_benchmark_are_told_before_anything_is_built(fresh_checkout, arguments, words):
+    (fresh_checkout.root / "a.blend").touch()
+    assert_one_sentence(fresh_checkout.run("bench", "rays", *arguments, cwd=fresh_checkout.root), 2, *words)
+    assert not (fresh_checkout.root / "build").exists()
+
+
 def test_the_viewport_needs_a_screen(checkout):
     assert_one_sentence(checkout.run("viewport", "scene.blend"), 1, "screen")
 

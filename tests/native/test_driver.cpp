@@ -83,6 +83,14 @@ TEST_F(Driver, TakesAnotherSizeAndSampleCount) {
   EXPECT_EQ(content("out.pfm").find("PF\n20 10\n"), 0u);
 }
 
+TEST_F(Driver, ShowsRaysAtWork) {
+  ASSERT_EQ(run("life.scene -o steps.pfm --debug steps --stats stats.json"), 0) << content("err");
+  EXPECT_EQ(parse_json(content("stats.json")).at("rays").number, 2 * 48 * 48);
+  ASSERT_EQ(run("life.scene -o tests.pfm --debug tests"), 0) << content("err");
+  EXPECT_EQ(content("steps.pfm").size(), content("tests.pfm").size());
+  EXPECT_NE(content("steps.pfm"), content("tests.pfm"));
+}
+
 TEST_F(Driver, ExplainsItself) {
   EXPECT_EQ(run("--help"), 0);
   EXPECT_EQ(content("out").find("usage: "), 0u);
@@ -100,6 +108,7 @@ TEST_F(Driver, MistakesAreOneSentence) {
   for (const char* samples : {"0", "-1", "1.5", "many", "99999999999"})
     expect_refused(fmt::format("life.scene --samples {}", samples), "--samples");
   expect_refused("life.scene --size 100000x2", "100000x2");
+  expect_refused("life.scene --debug everything", "none, steps, tests, lists, tiles");
   std::ofstream(file("text")) << "no snapshot at all, but long enough for a head";
   expect_refused("text", "no Panoptes snapshot");
 }

@@ -78,7 +78,7 @@ TEST(OrthographicTracer, SettingsChangeWorkAndNeverHits) {
   const std::vector<TracedHit> due = hits_of(usual, scene);
   for (const OrthographicSettings& settings :
        {OrthographicSettings{.tiles = 1}, {.tiles = 2, .divisions = 3}, {.tiles = 100},
-        {.tiles = 512, .divisions = 0}, {.divisions = 3, .triangles_a_part = 1},
+        {.tiles = 512, .divisions = 0}, {.divisions = 4, .triangles_a_part = 1},
         {.buckets_per_triangle = 1}, {.buckets_per_triangle = 64}}) {
     SCOPED_TRACE(fmt::format("{} tiles, {} divisions, {} triangles, {} buckets", settings.tiles,
                              settings.divisions, settings.triangles_a_part,
@@ -92,7 +92,7 @@ TEST(OrthographicTracer, SettingsChangeWorkAndNeverHits) {
 TEST(OrthographicTracer, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(OrthographicTracer({.tiles = -1}), Error);
   EXPECT_THROW(OrthographicTracer({.tiles = 1025}), Error);
-  EXPECT_THROW(OrthographicTracer({.divisions = 4}), Error);
+  EXPECT_THROW(OrthographicTracer({.divisions = 5}), Error);
   EXPECT_THROW(OrthographicTracer({.triangles_a_part = 0}), Error);
   EXPECT_THROW(OrthographicTracer({.buckets_per_triangle = 0}), Error);
 }

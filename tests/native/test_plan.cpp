@@ -164,6 +164,21 @@ TEST(FramePlan, ForcingLeavesTheArtistsChoicesAlone) {
     EXPECT_FALSE(plan::runs(plan::make_plan(furnished(), settings), "soft_shadows"));
 }
 
+TEST(FramePlan, ADebugPictureRunsRaysInPlaceOfTheScene) {
+  scene::Facts facts = furnished();
+  facts.lamps[0] = facts.shadow_lamps[0] = 1;
+  PlanSettings settings;
+  settings.debug_picture = ray_picture::Kind::kSteps;
+  settings.passes.set(size_t(film::Pass::kCombined));
+  for (bool force : {false, true}) {
+    settings.force_all_effects = force;
+    std::set<std::string> names = running(plan::make_plan(facts, settings));
+    EXPECT_EQ(names.count("pass_combined"), 1u);
+    std::erase_if(names, [](const std::string& name) { return name.starts_with("pass_"); });
+    EXPECT_EQ(names, (std::set<std::string>{"triangles", "structure", "rays"}));
+  }
+}
+
 TEST(FramePlan, KnowsItsEffectsByName) {
   scene::Facts facts = furnished();
   facts.alpha = true;

@@ -36,6 +36,7 @@ void expect_refused(F change, const std::string& part) {
 }
 
 TEST(RequestCheck, RefusesWhatMakesNoSense) {
+  expect_refused([](auto& r) { r.debug_picture = ray_picture::Kind(17); }, "debug picture number 17");
   expect_refused([](auto& r) { r.last_sample = 0; }, "at least one sample");
   expect_refused([](auto& r) { r.first_sample = r.last_sample = 5; }, "at least one sample");
   expect_refused([](auto& r) { r.first_sample = 7; }, "at least one sample");

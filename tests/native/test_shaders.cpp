@@ -1,18 +1,19 @@
 // Every permutation that native code can ask for: valid to the reference compiler, and accepted by
 // the driver at hand.
 #include "base/error.h"
-#include "bvh_tracer/bvh_tracer.h"
 #include "film/film.h"
-#include "primitive_tracer/orthographic_tracer.h"
 #include "gl/context.h"
 #include "gl/program.h"
 #include "primitive_tracer/cube_tracer.h"
+#include "primitive_tracer/orthographic_tracer.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/sun_cascades.h"
+#include "ray_picture/ray_picture.h"
+#include "rays/tracers.h"
 #include "realtime/realtime.h"
 #include "support.h"
-#include "tracing/ray_waves.h"
+#include "tracing/opacity.h"
 
 #include <unistd.h>
 
@@ -110,6 +111,7 @@ class Shaders : public ::testing::Test {
             add(rasterize::raster_program(&m, {.depth_only = depth_only}));
         for (int bits = 0; bits < 16; ++bits) add(rasterize::surface_program(m, surfaces(bits)));
         add(rasterize::emitter_program(m));
+        for (bool transmittance : {false, true}) add(tracing::opacity_program(m, transmittance));
       }
     for (const char* name : {"bin_count", "bin_offsets", "bin_scatter"})
       add(rasterize::bin_program(name));
@@ -139,16 +141,28 @@ class Shaders : public ::testing::Test {
       add(realtime::depth_program(film));
     }
 
-    const bvh_tracer::BvhTracer bvh(context->device());
-    const primitive_tracer::OrthographicTracer orthographic;
     for (const gl::ProgramSource& source : primitive_tracer::orthographic_build_programs())
       add(source);
-    using tracing::RaySource;
-    for (const tracing::Tracer* tracer : {(const tracing::Tracer*)&bvh, (const tracing::Tracer*)&orthographic})
+    for (int kind = 1; kind < int(ray_picture::kKindNames.size()); ++kind)
+      for (bool moments : {false, true}) {
+        film.start(4, 4, {}, moments);
+        add(ray_picture::false_colour_program(ray_picture::Kind(kind), film));
+      }
+    add(ray_picture::camera_rays_program());
+    add(tracing::flatten_program());
+    for (int bits = 0; bits < 4; ++bits) {
+      add(tracing::open_rays_program(bits & 1, bits & 2));
+      add(tracing::opacity_sort_program(bits & 1, bits & 2));
+    }
+    for (const TracerEntry& entry : tracers()) {
+      const auto tracer = entry.make(context->device());
       for (int bits = 0; bits < 4; ++bits)
-        for (RaySource from : {RaySource::kAll, RaySource::kListed, RaySource::kResumed})
-          add(tracing::trace_program(
-              *tracer, {.any_hit = bool(bits & 1), .count_work = bool(bits & 2)}, from));
+        for (auto surfaces : {tracing::Surfaces::kAll, tracing::Surfaces::kOpaque,
+                              tracing::Surfaces::kAlpha})
+          for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kListed,
+                            tracing::RaySource::kResumed})
+            add(tracing::trace_program(*tracer, {bool(bits & 1), bool(bits & 2), surfaces}, from));
+    }
     for (int bits = 0; bits < 6; ++bits) {
       primitive_tracer::CubeSettings settings{.linked_lists = bits % 3 > 0,
                                               .thesis_rejection = bits % 3 > 1};
@@ -157,7 +171,7 @@ class Shaders : public ::testing::Test {
         add(std::move(source));
       const primitive_tracer::CubeTracer tracer(settings);
       for (bool any_hit : {false, true})
-        for (RaySource from : {RaySource::kAll, RaySource::kResumed})
+        for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
           add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));
     }
 

@@ -148,7 +148,7 @@ RayScene grass() {
   Triangles t;
   Random random(11);
   add_quad(t, {-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0});
-  for (int i = 0; i < 60'000; ++i) {
+  for (int i = 0; i < 20'000; ++i) {
     const glm::vec3 root(random.between(-5, 5), random.between(-5, 5), 0);
     const float turn = random.between(0, kTurn), height = random.between(0.2f, 0.6f);
     const glm::vec3 across = (0.0025f * height) * glm::vec3(std::cos(turn), std::sin(turn), 0);

@@ -27,7 +27,7 @@ RayScene box_room();
 RayScene soup();
 // A finely tessellated closed shape that swells and twists with `time` (s); 160 000 triangles.
 RayScene blob(float time = 0);
-// A field of 60 000 blades of grass, each a sliver of 1 : 200, over ground.
+// A field of 20 000 blades of grass, each a sliver of 1 : 200, over ground.
 RayScene grass();
 
 // Names of the scenes above, and the scene of a name. Throws Error for another name.

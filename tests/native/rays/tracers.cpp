@@ -27,7 +27,7 @@ const std::vector<TracerEntry>& tracers() {
          return std::make_unique<primitive_tracer::CubeTracer>(
              primitive_tracer::CubeSettings{.linked_lists = true});
        }},
-      {"bvh",
+      {"BVH2",
        [](const gl::DeviceInfo& device) {
          return std::make_unique<bvh_tracer::BvhTracer>(device);
        }},

@@ -18,6 +18,8 @@ struct TracerEntry {
 };
 
 const std::vector<TracerEntry>& tracers();
+// The one that others are measured against, beside Embree.
+constexpr const char* kYardstick = "bvh";
 // Throws Error, naming all, when there is none of that name.
 const TracerEntry& tracer_named(const std::string& name);
 

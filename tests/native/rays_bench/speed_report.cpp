@@ -65,7 +65,7 @@ Table SceneBench::builds() {
 Table SceneBench::trace(const RaySet& set) {
   Table table{fmt::format("{}, {}: {} rays{}", scene.name, set.name, set.rays.size(),
                           set.any_hit ? ", any hit" : ""),
-              {"tracer", "Mrays/s", "of Embree", "of BVH2", "steps", "tests", "dispatches", "differ",
+              {"tracer", "Mrays/s", "of Embree", "of bvh", "steps", "tests", "dispatches", "differ",
                "judged", "structural"},
               {}};
   for (int d = 0; d < kDifferenceCount; ++d) table.columns.push_back(name_of(Difference(d)));
@@ -108,7 +108,7 @@ Table SceneBench::trace(const RaySet& set) {
       if (std::get<std::string>(row[kName]) == name) return row[kRate];
     return {};
   };
-  const Cell embree = rate_of(kEmbrees[0].name), bvh = rate_of("BVH2");
+  const Cell embree = rate_of(kEmbrees[0].name), bvh = rate_of(kYardstick);
   for (auto& row : table.rows) {
     const auto ratio = [&](const Cell& of) -> Cell {
       if (std::holds_alternative<double>(of)) return std::get<double>(row[kRate]) / std::get<double>(of);

@@ -51,7 +51,7 @@ std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& option
     device.assign(scene.triangles);
     const RaySet primary = primary_rays(scene, options.rays);
     const std::vector<RaySet> secondary = secondary_rays(scene, embree, options.rays);
-    Table table{fmt::format("Figure 7.10, {}: {} triangles", name, scene.triangles.size()),
+    Table table{fmt::format("Figure 7.10, {}: {} triangles", scene.name, scene.triangles.size()),
                 {"tracer", "tiles", "buckets", "MB", "build ms", "primary Mrays/s"},
                 {}};
     for (const RaySet& set : secondary) table.columns.push_back(set.name);
