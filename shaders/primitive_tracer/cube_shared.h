@@ -20,8 +20,8 @@ SHARED_ASSERT_SIZE(CubeViews, 112)
 // How far rounding may put a position off, in reaches: sixteen times what one operation does.
 const float POSITION_ERROR = 1e-6;
 
-// A cell of the pyramid is a node: its least and greatest depth, greater than the greatest where it
-// holds nothing. Without linked lists there follow, in tiles, where the offsets of its buckets
+// A cell of the pyramid is a node: its least and greatest depth, the least above the greatest where
+// it holds nothing. Without linked lists there follow, in tiles, where the offsets of its buckets
 // begin, and how many buckets it has; so it is a uvec4, and a uvec2 else.
 
 // What rasterisation finds out about a tile.
