@@ -236,6 +236,34 @@ TEST_F(Opacity, FollowsTheMaterialAtTheHit) {
     EXPECT_EQ(transmittance[i], clear[i] ? glm::vec4(0.75f, 0.5f, 0.25f, 0) : glm::vec4(0)) << i;
 }
 
+TEST_F(Opacity, EachMaterialDecidesItsOwnRays) {
+  // Cards side by side, the last by its UV map: clear on the right, opaque on the left.
+  TestScene s;
+  const std::vector<float> alphas = {0.25f, 0.5f, 0.75f};
+  for (size_t i = 0; i < alphas.size(); ++i)
+    s.add_object(quad({2 * float(i), 0, 0}, {0.9f, 0, 0}, {0, 0.9f, 0}),
+                 {s.add_material(alpha_card({1, 1, 1, alphas[i]}))});
+  s.add_object(quad({6, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+               {s.add_material(
+                   material("void evaluate_material(const Hit hit, inout Surface surface) {\n"
+                            "  closure_transparent(surface, vec3(1.0),\n"
+                            "                      vec3(hit_uv(hit, UV_DEFAULT).x));\n"
+                            "}\n",
+                            {}, {.alpha = true, .glossy = false}))});
+  install(s);
+  std::vector<TracedRay> rays;
+  std::vector<float> due;
+  for (int i = 0; i < 400; ++i) {
+    const float across = 0.001f * float(i) + 0.1f;  // of a card, off the diagonal
+    const size_t card = size_t(i % 4);
+    rays.push_back(ray_of({2 * float(card) + across, -0.3f, 3}, {0, 0, -1}));
+    due.push_back(card < 3 ? 1 - alphas[card] : 0.5f + 0.5f * across);
+  }
+  trace(rays, OpacityMode::kTransmittance);
+  for (size_t i = 0; i < rays.size(); ++i) EXPECT_NEAR(transmittance[i].x, due[i], 1e-5) << i;
+  EXPECT_EQ(opacity.rounds(), 1);
+}
+
 TEST_F(Opacity, OfOpaqueScenesCostsNothing) {
   TestScene s;
   s.add_object(floor_at(-1, 4), {s.add_material(lambert())});
