@@ -81,7 +81,14 @@ class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
-        self._column().prop(context.scene.panoptes, 'debug_picture')
+        settings = context.scene.panoptes
+        column = self._column()
+        column.prop(settings, 'debug_picture')
+        if settings.debug_picture != 'none':
+            column.prop(settings.primitive, 'structure')
+            if settings.primitive.structure in {'orthographic', 'cube', 'lists'}:
+                column.prop(settings.primitive, 'tiles')
+                column.prop(settings.primitive, 'buckets')
 
 
 class PANOPTES_PT_shadows(EnginePanel, bpy.types.Panel):

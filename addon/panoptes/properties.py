@@ -32,6 +32,35 @@ class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
         default='AUTO')
 
 
+class PanoptesPrimitiveSettings(bpy.types.PropertyGroup):
+    """Options of rays through triangles: the Primitive method and pictures of rays at work."""
+
+    structure: EnumProperty(
+        name='Structure',
+        description='How rays find the triangles that they meet. The picture is the same with each, the '
+                    'time is not',
+        items=(
+            ('auto', 'Automatic', 'What is expected to take the least time, by what each has taken so far'),
+            ('orthographic', 'Orthographic View', 'One view along the shortest side of the scene: fast to '
+                                                  'build, for geometry that moves'),
+            ('cube', 'Cube', 'Six views around a centre'),
+            ('lists', 'Cube, Linked Lists', 'Six views with the linked lists of the dissertation, to '
+                                            'compare'),
+            ('bvh', 'Hierarchy', 'A hierarchy of boxes: fast to trace, for geometry that rests'),
+        ),
+        default='auto')
+    tiles: IntProperty(
+        name='Tiles',
+        description='Tiles along one side of a view, rounded up to a power of two. 0 follows the number '
+                    'of triangles',
+        default=0, min=0, max=1024)
+    buckets: IntProperty(
+        name='Buckets',
+        description='Parts of a tile over depth: in all with linked lists, for each of its triangles '
+                    'otherwise. 0 is what is usually fastest',
+        default=0, min=0, max=255)
+
+
 class PanoptesSceneSettings(bpy.types.PropertyGroup):
     """Options of a scene's renders."""
 
@@ -94,12 +123,13 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
         ),
         default='none')
     realtime: PointerProperty(type=PanoptesRealtimeSettings)
+    primitive: PointerProperty(type=PanoptesPrimitiveSettings)
     last_stats: StringProperty(
         name='Last Statistics', description='Statistics of the last final render, as JSON',
         options={'HIDDEN', 'SKIP_SAVE'})
 
 
-_CLASSES = (PanoptesRealtimeSettings, PanoptesSceneSettings)
+_CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, PanoptesSceneSettings)
 
 
 def register():

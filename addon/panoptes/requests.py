@@ -49,6 +49,8 @@ def _settings(scene):
         found['noise_threshold'] = settings.noise_threshold
     if settings.debug_picture != 'none':
         found['debug_picture'] = settings.debug_picture
+        found['structure'] = settings.primitive.structure
+        found['tiles'], found['buckets'] = settings.primitive.tiles, settings.primitive.buckets
     return found
 
 

@@ -17,13 +17,15 @@ using panoptes::fail;
 
 constexpr const char* kUsage =
     "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
-    "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n";
+    "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
+    "                       [--structure auto|orthographic|cube|lists|bvh] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
   std::string scene, output, stats;
   int width = 0, height = 0, samples = 0, repeat = 1;
   bool software = false;
   std::optional<panoptes::ray_picture::Kind> debug;
+  panoptes::engine::StructureSettings structure;
 };
 
 int positive(const std::string& option, const std::string& text) {
@@ -56,7 +58,14 @@ Arguments parse(const std::vector<std::string>& words) {
       if (!panoptes::ray_picture::known(*a.debug))
         fail("--debug takes one of {}, not '{}': see --help",
              fmt::join(panoptes::ray_picture::kKindNames, ", "), words[i]);
-    } else if (word == "--size") {
+    } else if (word == "--structure") {
+      a.structure.structure = panoptes::engine::find_structure(value());
+      if (int(a.structure.structure) < 0)
+        fail("--structure takes one of {}, not '{}': see --help",
+             fmt::join(panoptes::engine::kStructureNames, ", "), words[i]);
+    } else if (word == "--tiles") a.structure.tiles = positive(word, value());
+    else if (word == "--buckets") a.structure.buckets = positive(word, value());
+    else if (word == "--size") {
       const std::string& size = value();
       const size_t x = size.find('x');
       if (x == std::string::npos) fail("--size takes WxH, not '{}': see --help", size);
@@ -97,6 +106,8 @@ void run(const Arguments& arguments) {
   }
   request.passes.set(size_t(panoptes::film::Pass::kCombined));
   request.debug_picture = arguments.debug.value_or(request.debug_picture);
+  if (arguments.structure != panoptes::engine::StructureSettings{})
+    request.structure = arguments.structure;
   for (int i = 0; i < arguments.repeat; ++i) {
     const auto job = engine.render(request);
     while (!job->wait(0.1)) {

@@ -22,8 +22,6 @@ double ms_since(Clock::time_point start) {
 constexpr double kLiveIntervalMs = 100;
 // The estimated error needs a copy of the film: look at it every so many samples.
 constexpr uint32_t kErrorInterval = 4;
-// Of those that make_tracer() knows.
-constexpr const char* kTracer = "orthographic";
 
 // The passes of an effect have its name, or begin with it: "structure_lists".
 bool belongs(const std::string& pass, const std::string& effect) {
@@ -104,12 +102,16 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
 
 void RenderThread::render_sample(const Job& job, uint32_t index) {
   const RenderRequest& request = job.request();
-  if (request.debug_picture == ray_picture::Kind::kNone)
+  if (request.debug_picture == ray_picture::Kind::kNone) {
     realtime_.render_sample(index, request.first_sample, request.last_sample, gpu_scene_, film_,
                             job.cancelled_);
-  else
-    ray_picture_.render(request.camera, request.debug_picture, traced_.tracer(),
-                        traced_.triangles(), film_, programs_, timer_, job.cancelled_);
+    return;
+  }
+  const Clock::time_point start = Clock::now();
+  ray_picture_.render(request.camera, request.debug_picture, traced_.tracer(), traced_.triangles(),
+                      film_, programs_, timer_, job.cancelled_);
+  glFinish();
+  traced_.note_rays(int64_t(request.camera.width) * request.camera.height, ms_since(start));
 }
 
 void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex) {
@@ -141,7 +143,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   }
   if (debug) {
     job.set_status("building the structure for rays", 0);
-    traced_.build(kTracer, programs_, timer_);
+    traced_.build(request.structure, int64_t(request.camera.width) * request.camera.height,
+                  programs_, timer_);
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);
   for (const std::string& warning : traced_.warnings()) warnings.push_back(warning);

@@ -48,6 +48,7 @@ void RenderRequest::check() const {
   if (!ray_picture::known(debug_picture))
     fail("there is no debug picture number {}: choose one of {}", int(debug_picture),
          fmt::join(ray_picture::kKindNames, ", "));
+  structure.check();
 }
 
 std::string RenderStats::to_json() const {

@@ -1,6 +1,7 @@
 // What a caller asks of a frame, and what it is told of it.
 #pragma once
 
+#include "engine/structure.h"
 #include "film/passes.h"
 #include "gpu_scene/view.h"
 #include "plan/effect.h"
@@ -30,6 +31,7 @@ struct RenderRequest {
   double noise_threshold = 0;   // relative; 0: none
   // Shows rays at work in place of the scene, in Combined; other passes stay 0.
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;
+  StructureSettings structure;  // for rays
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;

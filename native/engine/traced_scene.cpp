@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <chrono>
+
 namespace panoptes::engine {
 
 void TracedScene::update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu,
@@ -15,17 +18,38 @@ void TracedScene::update(const scene::Scene& scene, const gpu_scene::GpuScene& g
   built_ = !triangles_->update(scene, gpu, programs, timer) && held;
 }
 
-void TracedScene::build(const std::string& tracer, gl::ProgramCache& programs,
-                        gl::PassTimer& timer) {
-  if (!tracer_ || name_ != tracer) {
+Structure TracedScene::choose(int64_t rays) const {
+  const std::array<std::string, 2> candidates{name_of(Structure::kOrthographic),
+                                              name_of(Structure::kBvh)};
+  return find_structure(costs_.choose(candidates, built_ ? name_of(made_.structure) : "",
+                                      triangles_->count(), rays));
+}
+
+void TracedScene::build(const StructureSettings& settings, int64_t rays,
+                        gl::ProgramCache& programs, gl::PassTimer& timer) {
+  StructureSettings wanted = settings;
+  if (wanted.structure == Structure::kAuto) wanted.structure = choose(rays);
+  const bool fresh = !tracer_ || made_ != wanted;
+  if (fresh) {
     tracer_.reset();  // before the other takes its memory
-    tracer_ = make_tracer(tracer, device_);
-    name_ = tracer;
-    built_ = false;
+    tracer_ = make_tracer(wanted, device_);
+    made_ = wanted;
+    built_ = warm_ = false;
   }
   if (built_) return;
+  glFinish();
+  const auto start = std::chrono::steady_clock::now();
   tracer_->build(*triangles_, programs, timer);
+  glFinish();
   built_ = true;
+  // A first build compiles programs and grows pools, which says nothing of the next.
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  if (!fresh) costs_.add_build(name_of(made_.structure), triangles_->count(), took.count());
+}
+
+void TracedScene::note_rays(int64_t rays, double ms) {
+  if (warm_) costs_.add_trace(name_of(made_.structure), rays, ms);
+  warm_ = true;
 }
 
 void TracedScene::release() {

@@ -2,11 +2,13 @@
 // kept from frame to frame while geometry rests, whatever the camera does.
 #pragma once
 
+#include "engine/structure.h"
 #include "gl/context.h"
 #include "gl/pass_timer.h"
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
 #include "scene/scene.h"
+#include "tracing/cost_book.h"
 #include "tracing/tracer.h"
 #include "tracing/triangle_list.h"
 
@@ -24,8 +26,13 @@ class TracedScene {
   // Brings the list of triangles up to date with `scene`, of which `gpu` is.
   void update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu, gl::ProgramCache& programs,
               gl::PassTimer& timer);
-  // Builds the structure of the tracer of that name, if it does not hold the list as it is now.
-  void build(const std::string& tracer, gl::ProgramCache& programs, gl::PassTimer& timer);
+  // Builds the structure that `settings` ask for, if it does not hold the list as it is now. kAuto
+  // takes the one that will have cost least after about `rays` rays.
+  void build(const StructureSettings& settings, int64_t rays, gl::ProgramCache& programs,
+             gl::PassTimer& timer);
+  // What so many rays took, for later choices. The first after another structure was made do not
+  // count, since they have compiled programs.
+  void note_rays(int64_t rays, double ms);
   // Frees both.
   void release();
 
@@ -35,11 +42,18 @@ class TracedScene {
   std::vector<std::string> warnings() const;
 
  private:
+  static std::string name_of(Structure structure) {
+    return std::string(kStructureNames[size_t(structure)]);
+  }
+  Structure choose(int64_t rays) const;
+
   gl::DeviceInfo device_;
   std::optional<tracing::TriangleList> triangles_;
   std::unique_ptr<tracing::Tracer> tracer_;
-  std::string name_;
+  StructureSettings made_;  // what tracer_ was made for
   bool built_ = false;
+  bool warm_ = false;       // has traced
+  tracing::CostBook costs_;
 };
 
 }  // namespace panoptes::engine

@@ -2,14 +2,47 @@
 
 #include "base/error.h"
 #include "bvh_tracer/bvh_tracer.h"
+#include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 
 namespace panoptes::engine {
 
-std::unique_ptr<tracing::Tracer> make_tracer(std::string_view name, const gl::DeviceInfo& device) {
-  if (name == "orthographic") return std::make_unique<primitive_tracer::OrthographicTracer>();
-  if (name == "bvh") return std::make_unique<bvh_tracer::BvhTracer>(device);
-  fail("there is no ray tracer '{}': choose 'orthographic' or 'bvh'", name);
+void StructureSettings::check() const {
+  if (int(structure) < 0 || size_t(structure) >= kStructureNames.size())
+    fail("there is no structure number {} for rays: choose one of {}", int(structure),
+         fmt::join(kStructureNames, ", "));
+  if (tiles < 0 || tiles > 1024)
+    fail("the structure for rays was asked for {} tiles a side: choose 1 to 1024, or 0 for as many as "
+         "the scene needs",
+         tiles);
+  if (buckets < 0 || buckets > 255)
+    fail("the structure for rays was asked for {} buckets: choose 1 to 255, or 0 for its own number",
+         buckets);
+}
+
+std::unique_ptr<tracing::Tracer> make_tracer(const StructureSettings& settings,
+                                             const gl::DeviceInfo& device) {
+  const bool lists = settings.structure == Structure::kLists;
+  switch (settings.structure) {
+    case Structure::kOrthographic: {
+      primitive_tracer::OrthographicSettings s;
+      s.tiles = settings.tiles;
+      if (settings.buckets) s.buckets_per_triangle = settings.buckets;
+      return std::make_unique<primitive_tracer::OrthographicTracer>(s);
+    }
+    case Structure::kCube:
+    case Structure::kLists: {
+      primitive_tracer::CubeSettings s;
+      s.linked_lists = lists;
+      s.tiles = settings.tiles;
+      if (settings.buckets && lists) s.buckets = settings.buckets;
+      if (settings.buckets && !lists) s.buckets_per_triangle = float(settings.buckets);
+      return std::make_unique<primitive_tracer::CubeTracer>(s);
+    }
+    case Structure::kBvh: return std::make_unique<bvh_tracer::BvhTracer>(device);
+    case Structure::kAuto: break;
+  }
+  fail("no structure for rays was chosen: please report it");
 }
 
 }  // namespace panoptes::engine

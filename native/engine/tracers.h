@@ -1,16 +1,16 @@
-// Ray tracers by name.
+// Makes the ray tracers that a structure may be chosen from.
 #pragma once
 
+#include "engine/structure.h"
 #include "gl/context.h"
 #include "tracing/tracer.h"
 
 #include <memory>
-#include <string_view>
 
 namespace panoptes::engine {
 
-// "orthographic": the structure of primitive_tracer in one view; "bvh": the yardstick. Throws Error
-// when there is none of that name.
-std::unique_ptr<tracing::Tracer> make_tracer(std::string_view name, const gl::DeviceInfo& device);
+// `settings` must name one structure, not kAuto. A hierarchy has neither tiles nor buckets.
+std::unique_ptr<tracing::Tracer> make_tracer(const StructureSettings& settings,
+                                             const gl::DeviceInfo& device);
 
 }  // namespace panoptes::engine

@@ -130,7 +130,7 @@ engine::RenderRequest request(const py::dict& dict) {
   static const std::set<std::string> known{"shadow_resolution", "soft_shadows",
                                            "filter_penumbrae", "time_budget",
                                            "noise_threshold", "bounces", "film_transparent",
-                                           "debug_picture"};
+                                           "debug_picture", "structure", "tiles", "buckets"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -145,6 +145,13 @@ engine::RenderRequest request(const py::dict& dict) {
   if (!ray_picture::known(r.debug_picture))
     fail("there is no debug picture '{}': choose one of {}", debug_picture,
          fmt::join(ray_picture::kKindNames, ", "));
+  const auto structure = get<std::string>(settings, "structure", "auto");
+  r.structure.structure = engine::find_structure(structure);
+  if (r.structure.structure == engine::Structure(-1))
+    fail("there is no structure '{}' for rays: choose one of {}", structure,
+         fmt::join(engine::kStructureNames, ", "));
+  r.structure.tiles = get(settings, "tiles", 0);
+  r.structure.buckets = get(settings, "buckets", 0);
   return r;
 }
 
