@@ -38,8 +38,10 @@ int main(int count, char** words) {
   using namespace panoptes::test;
   try {
     const BenchOptions options = parse_bench_options({words + 1, words + count});
-    if (options.help) std::fputs(kBenchUsage, stdout);
-    else run(options);
+    if (options.help)
+      std::fputs(kBenchUsage, stdout);
+    else
+      run(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "panoptes: {}\n", error.what());
     return 1;

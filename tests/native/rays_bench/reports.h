@@ -17,6 +17,8 @@ struct Milliseconds {
 };
 // Medians of `repeats` runs.
 Milliseconds median_time(int repeats, const std::function<void()>& run);
+// The least of three runs.
+Milliseconds least_time(const std::function<void()>& run);
 // The one to compare: on a software renderer CPU time, which others on the machine do not disturb;
 // with a GPU, wall clock.
 double fair(const Milliseconds& time, const gl::DeviceInfo& device);

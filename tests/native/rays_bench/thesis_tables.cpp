@@ -57,14 +57,16 @@ std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& option
     for (const RaySet& set : secondary) table.columns.push_back(set.name);
     for (const TracerVariant& variant : tracer_variants()) {
       const auto& wanted = options.tracers;
-      if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), variant.tracer) == wanted.end())
+      if (!wanted.empty() &&
+          std::find(wanted.begin(), wanted.end(), variant.tracer) == wanted.end())
         continue;
       const auto tracer = variant.make();
       device.build(*tracer);
       const double build =
           fair(median_time(kBuilds, [&] { device.build(*tracer); }), device.device());
-      std::vector<Cell> row{variant.tracer, double(variant.tiles), variant.buckets,
-                            double(tracer->bytes()) * kMega, build, mrays(device, *tracer, primary)};
+      std::vector<Cell> row{variant.tracer,  double(variant.tiles),
+                            variant.buckets, double(tracer->bytes()) * kMega,
+                            build,           mrays(device, *tracer, primary)};
       for (const RaySet& set : secondary) row.push_back(mrays(device, *tracer, set));
       table.add(std::move(row));
     }
