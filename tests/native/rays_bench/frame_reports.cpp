@@ -69,8 +69,7 @@ FrameCosts frame_costs(TracingDevice& device, const BenchOptions& options, const
 
 }  // namespace
 
-std::vector<Table> figure_7_8(TracingDevice& device, const BenchOptions& options) {
-  std::vector<Table> tables;
+void figure_7_8(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   for (const std::string& name : options.scenes) {
     const RayScene scene = load_scene(name);
     Table table{fmt::format("Figure 7.8, {}: {} triangles, ms a frame", scene.name,
@@ -90,12 +89,11 @@ std::vector<Table> figure_7_8(TracingDevice& device, const BenchOptions& options
         table.add({tracer, double(side), cost.build, direct, cost.build + direct, paths,
                    cost.build + paths, both, cost.build + both});
       }
-    tables.push_back(std::move(table));
+    emit(table);
   }
-  return tables;
 }
 
-std::vector<Table> deform_report(TracingDevice& device, const BenchOptions& options) {
+void deform_report(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   std::vector<RayScene> frames;
   for (const std::string& name : options.scenes) frames.push_back(load_scene(name));
   if (frames.empty())
@@ -124,7 +122,7 @@ std::vector<Table> deform_report(TracingDevice& device, const BenchOptions& opti
     table.add(
         {tracer, cost.build, primary, shadow, diffuse, cost.build + primary + shadow + diffuse});
   }
-  return {table};
+  emit(table);
 }
 
 }  // namespace panoptes::test

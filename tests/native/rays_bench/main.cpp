@@ -8,27 +8,30 @@
 namespace panoptes::test {
 namespace {
 
-std::vector<Table> report(TracingDevice& device, const BenchOptions& options) {
+void report(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   switch (options.report) {
-    case BenchReport::kSpeed: return speed_report(device, options);
-    case BenchReport::kTable71: return table_7_1(device, options);
-    case BenchReport::kFigure78: return figure_7_8(device, options);
-    case BenchReport::kFigure710: return figure_7_10(device, options);
-    case BenchReport::kDeform: return deform_report(device, options);
+    case BenchReport::kSpeed: return speed_report(device, options, emit);
+    case BenchReport::kTable71: return table_7_1(device, options, emit);
+    case BenchReport::kFigure78: return figure_7_8(device, options, emit);
+    case BenchReport::kFigure710: return figure_7_10(device, options, emit);
+    case BenchReport::kDeform: return deform_report(device, options, emit);
   }
-  return {};
 }
 
 void run(const BenchOptions& options) {
   TracingDevice device;
   const std::string name = device.device().renderer;
-  const std::vector<Table> tables = report(device, options);
-  if (options.json) {
-    std::fputs(as_json(name, tables).c_str(), stdout);
+  if (!options.json) {
+    fmt::print("{}\n", name);
+    report(device, options, [](const Table& table) {
+      fmt::print("\n{}", as_text(table));
+      std::fflush(stdout);
+    });
     return;
   }
-  fmt::print("{}\n", name);
-  for (const Table& table : tables) fmt::print("\n{}", as_text(table));
+  std::vector<Table> tables;
+  report(device, options, [&tables](const Table& table) { tables.push_back(table); });
+  std::fputs(as_json(name, tables).c_str(), stdout);
 }
 
 }  // namespace

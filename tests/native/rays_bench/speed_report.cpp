@@ -134,21 +134,19 @@ Table SceneBench::trace(const RaySet& set) {
 
 }  // namespace
 
-std::vector<Table> speed_report(TracingDevice& device, const BenchOptions& options) {
-  std::vector<Table> tables;
+void speed_report(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   for (const std::string& name : options.scenes) {
     const RayScene scene = load_scene(name);
     device.assign(scene.triangles);
     SceneBench bench{device, options, scene, {}, {}};
-    tables.push_back(bench.builds());
+    emit(bench.builds());
     for (const RaySet& set : all_rays(scene, *bench.embrees.back(), options.rays)) {
       const auto& wanted = options.sets;
       if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), set.name) == wanted.end())
         continue;
-      if (!set.rays.empty()) tables.push_back(bench.trace(set));
+      if (!set.rays.empty()) emit(bench.trace(set));
     }
   }
-  return tables;
 }
 
 }  // namespace panoptes::test

@@ -21,7 +21,7 @@ Cell mrays(TracingDevice& device, const tracing::Tracer& tracer, const RaySet& s
 
 }  // namespace
 
-std::vector<Table> table_7_1(TracingDevice& device, const BenchOptions& options) {
+void table_7_1(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   const std::vector<std::string> kinds{"visibility", "specular", "glossy", "diffuse"};
   Table table{"Table 7.1: Mrays/s by kind of ray", {"scene", "primitives", "tracer"}, {}};
   table.columns.insert(table.columns.end(), kinds.begin(), kinds.end());
@@ -40,11 +40,10 @@ std::vector<Table> table_7_1(TracingDevice& device, const BenchOptions& options)
       table.add(std::move(row));
     }
   }
-  return {table};
+  emit(table);
 }
 
-std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& options) {
-  std::vector<Table> tables;
+void figure_7_10(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   for (const std::string& name : options.scenes) {
     const RayScene scene = load_scene(name);
     const EmbreeScene embree(scene.triangles);
@@ -70,9 +69,8 @@ std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& option
       for (const RaySet& set : secondary) row.push_back(mrays(device, *tracer, set));
       table.add(std::move(row));
     }
-    tables.push_back(std::move(table));
+    emit(table);
   }
-  return tables;
 }
 
 }  // namespace panoptes::test
