@@ -12,6 +12,7 @@ void report(TracingDevice& device, const BenchOptions& options, const Emit& emit
   switch (options.report) {
     case BenchReport::kSpeed: return speed_report(device, options, emit);
     case BenchReport::kTable71: return table_7_1(device, options, emit);
+    case BenchReport::kTable73: return table_7_3(device, options, emit);
     case BenchReport::kFigure78: return figure_7_8(device, options, emit);
     case BenchReport::kFigure710: return figure_7_10(device, options, emit);
     case BenchReport::kDeform: return deform_report(device, options, emit);

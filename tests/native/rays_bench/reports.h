@@ -41,6 +41,8 @@ using Emit = std::function<void(const Table&)>;
 void speed_report(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Thesis, Table 7.1: Mrays/s by kind of ray.
 void table_7_1(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Table 7.3: the formula of its memory beside what is allocated.
+void table_7_3(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Thesis, Figure 7.8: build and trace of frames of growing size where geometry changes each frame.
 void figure_7_8(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Thesis, Figure 7.10: memory, build and trace by tiles and buckets.

@@ -1,3 +1,4 @@
+#include "primitive_tracer/cube_tracer.h"
 #include "rays/ray_sets.h"
 #include "rays_bench/reports.h"
 
@@ -41,6 +42,37 @@ void table_7_1(TracingDevice& device, const BenchOptions& options, const Emit& e
     }
   }
   emit(table);
+}
+
+void table_7_3(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
+  // Bytes, from the thesis' table and the text below it.
+  constexpr double kNode = 8, kBounds = 8, kHead = 4, kHit = 4 + 32;
+  primitive_tracer::CubeSettings settings;
+  settings.linked_lists = true;
+  for (const std::string& name : options.scenes) {
+    const RayScene scene = load_scene(name);
+    device.assign(scene.triangles);
+    primitive_tracer::CubeTracer tracer(settings);
+    device.build(tracer);
+    const auto parts = tracer.bytes_of_parts();
+    const double tiles = 6.0 * tracer.tiles() * tracer.tiles(), ids = tracer.counts().ids;
+    Table table{
+        fmt::format("Table 7.3, {}: the cube with linked lists, 6 x {} x {} tiles, {} buckets; "
+                    "c n_p = {:.3g} a tile",
+                    scene.name, tracer.tiles(), tracer.tiles(), settings.buckets, ids / tiles),
+        {"memory", "formula", "MB by formula", "MB allocated"},
+        {}};
+    table.add({"depth bounds, mipmapped", "8 x 1.33 a tile", kMega * tiles * kBounds * 4 / 3,
+               kMega * double(parts.depth_bounds)});
+    table.add({"id buffer: buckets", "4 B a tile", kMega * tiles * kHead * settings.buckets,
+               kMega * double(parts.buckets)});
+    table.add(
+        {"id buffer: lists", "8 c n_p a tile", kMega * ids * kNode, kMega * double(parts.ids)});
+    table.add({"hit buffer", "4 + 32 a ray", kMega * options.rays * kHit,
+               kMega * options.rays * double(sizeof(TracedHit))});
+    table.add({"rays", "none", 0.0, kMega * options.rays * double(sizeof(TracedRay))});
+    emit(table);
+  }
 }
 
 void figure_7_10(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
