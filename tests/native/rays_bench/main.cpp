@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 namespace panoptes::test {
 namespace {
@@ -21,10 +22,10 @@ void report(TracingDevice& device, const BenchOptions& options, const Emit& emit
 
 void run(const BenchOptions& options) {
   TracingDevice device;
-  const std::string name = device.device().renderer;
+  std::string name = device.device().renderer;
   if (!options.json) {
-    fmt::print("{}\n", name);
-    report(device, options, [](const Table& table) {
+    report(device, options, [&name](const Table& table) {
+      if (!name.empty()) fmt::print("{}\n", std::exchange(name, {}));  // above the first one
       fmt::print("\n{}", as_text(table));
       std::fflush(stdout);
     });
