@@ -54,7 +54,8 @@ def test_the_speed_report_compares_with_embree():
     assert_only_rounding_differs(found)
 
 
-@pytest.mark.parametrize("arguments", [("--table", "7.1"), ("--figure", "7.8"), ("--figure", "7.10")])
+@pytest.mark.parametrize("arguments", [
+    ("--table", "7.1"), ("--table", "7.3"), ("--figure", "7.8"), ("--figure", "7.10")])
 def test_the_thesis_tables_are_filled(arguments):
     (table,) = tables(*arguments, "--scene", "box_room", "--rays", "1024")
     assert table["rows"]

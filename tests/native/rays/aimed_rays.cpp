@@ -25,8 +25,8 @@ RaySet through_the_middle(const RayScene& scene, uint32_t count) {
   return set;
 }
 
-// At vertices and points on edges, from anywhere and from other vertices; from vertices and edges to
-// anywhere; and along edges.
+// At vertices and points on edges, from anywhere and from other vertices; from vertices and edges
+// to anywhere; and along edges.
 RaySet at_edges(const RayScene& scene, uint32_t count) {
   RaySet set{"edges", false, true, {}};
   Random random(22);
@@ -54,8 +54,8 @@ RaySet at_edges(const RayScene& scene, uint32_t count) {
   return set;
 }
 
-// From the middle and from points on the cube's planes, along edges, corners and diagonals of a cube
-// around the middle, exactly or one unit in the last place beside.
+// From the middle and from points on the cube's planes, along edges, corners and diagonals of a
+// cube around the middle, exactly or one unit in the last place beside.
 RaySet along_cubes(const RayScene& scene, uint32_t count) {
   RaySet set{"cube edges", false, true, {}};
   Random random(23);
@@ -88,8 +88,8 @@ RaySet along_axes(const RayScene& scene, uint32_t count) {
   for (uint32_t i = 0; i < count; ++i) {
     glm::vec3 direction(random.below(2) ? 0.0f : -0.0f);
     direction[int(random.below(3))] = random.below(2) ? 1.0f : -1.0f;
-    const glm::vec3 vertex = corner(
-        scene.triangles[random.below(uint32_t(scene.triangles.size()))], int(random.below(3)));
+    const glm::vec3 vertex = corner(scene.triangles[random.below(uint32_t(scene.triangles.size()))],
+                                    int(random.below(3)));
     glm::vec3 from = within(random, scene.bounds);
     if (i % 2) from = vertex - 0.25f * glm::length(from - vertex) * direction;
     set.rays.push_back(make_ray(from, direction));

@@ -1,5 +1,6 @@
 // The simplest tracer: every ray is tested with every triangle. Slow, and the judge of the others:
-// it shares their intersection test, so whatever they find otherwise their structure lost or made up.
+// it shares their intersection test, so whatever they find otherwise their structure lost or made
+// up.
 #pragma once
 
 #include "tracing/tracer.h"

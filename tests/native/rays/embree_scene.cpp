@@ -66,10 +66,12 @@ EmbreeScene::EmbreeScene(const Triangles& triangles, bool robust, RTCBuildQualit
   const RTCGeometry mesh = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(mesh, quality);
   const size_t count = triangles.size();
-  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
-      mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * count));
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-      mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), count));
+  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                   RTC_FORMAT_FLOAT3,
+                                                                   sizeof(glm::vec3), 3 * count));
+  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0,
+                                                                 RTC_FORMAT_UINT3,
+                                                                 3 * sizeof(uint32_t), count));
   const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN());  // Embree drops the triangle
   for (size_t i = 0; i < 3 * count; ++i) {
     const TracedTriangle& t = triangles[i / 3];

@@ -35,9 +35,9 @@ struct HardCaseMaker {
 const std::vector<HardCaseMaker>& hard_cases();
 
 // The rows by subject, for hard_cases() alone.
-std::vector<HardCaseMaker> hard_scales();      // sizes and places
-std::vector<HardCaseMaker> hard_triangles();   // broken, degenerate and crowded geometry
-std::vector<HardCaseMaker> hard_rays();        // limits, directions, masks
+std::vector<HardCaseMaker> hard_scales();     // sizes and places
+std::vector<HardCaseMaker> hard_triangles();  // broken, degenerate and crowded geometry
+std::vector<HardCaseMaker> hard_rays();       // limits, directions, masks
 
 // `count` rays between points of the box that is `margin` times the bounds' size larger on each
 // side, and as many of each set of aimed_rays().

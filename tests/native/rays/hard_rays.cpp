@@ -69,7 +69,8 @@ HardCase grazing() {
   Random random(62);
   for (uint32_t i = 0; i < 4 * kRays; ++i) {
     const float slope = std::pow(10.0f, random.between(-8, -1));
-    const glm::vec3 from(random.between(-7, 0), random.between(-7, 7), random.between(0, 4) * slope);
+    const glm::vec3 from(random.between(-7, 0), random.between(-7, 7),
+                         random.between(0, 4) * slope);
     c.add(make_ray(from, {1, random.between(-0.1f, 0.1f), -slope}), kSomething);
   }
   for (uint32_t i = 0; i < kRays; ++i) {
@@ -98,7 +99,8 @@ HardCase starts_on_geometry() {
 HardCase limits() {
   HardCase c;
   for (int i = 0; i < 4; ++i)
-    c.triangles.push_back(make_triangle({-4, -4, float(-i)}, {4, -4, float(-i)}, {0, 4, float(-i)}));
+    c.triangles.push_back(
+        make_triangle({-4, -4, float(-i)}, {4, -4, float(-i)}, {0, 4, float(-i)}));
   // Twice: t counts in the direction's length, and a factor of 4 rounds nothing.
   const auto add = [&](float t_min, float t_max, uint32_t what) {
     c.add(make_ray({0, 0, 1}, {0, 0, -1}, t_min, t_max), what);
@@ -160,12 +162,9 @@ HardCase visibility() {
 }  // namespace
 
 std::vector<HardCaseMaker> hard_rays() {
-  return {{"Watertight", watertight},
-          {"RegularGrid", regular_grid},
-          {"Grazing", grazing},
-          {"StartsOnGeometry", starts_on_geometry},
-          {"Limits", limits},
-          {"DirectionLengths", direction_lengths},
+  return {{"Watertight", watertight}, {"RegularGrid", regular_grid},
+          {"Grazing", grazing},       {"StartsOnGeometry", starts_on_geometry},
+          {"Limits", limits},         {"DirectionLengths", direction_lengths},
           {"Visibility", visibility}};
 }
 

@@ -34,7 +34,8 @@ HardCase millimetres_and_kilometres() {
   // Within the small room, from there to the hills, and from the hills into the room.
   Random random(41);
   for (uint32_t i = 0; i < kRays; ++i) {
-    const glm::vec3 a = random.in_box(small.low, small.high), b = random.in_box(small.low, small.high);
+    const glm::vec3 a = random.in_box(small.low, small.high),
+                    b = random.in_box(small.low, small.high);
     const glm::vec3 far(random.between(-900, 900), random.between(-900, 900), 60);
     c.add(make_ray(a, b - a));
     c.add(make_ray(a, far - a));
@@ -87,8 +88,8 @@ HardCase flat_scene(int axis) {
 
 HardCase huge_triangle() {
   HardCase c{box_room().triangles, {}, {}};
-  c.triangles.push_back(make_triangle({-1e6f, -2e6f, -1.5e6f}, {2e6f, 1e6f, 0.5e6f},
-                                      {-1e6f, 1.5e6f, 1e6f}));
+  c.triangles.push_back(
+      make_triangle({-1e6f, -2e6f, -1.5e6f}, {2e6f, 1e6f, 0.5e6f}, {-1e6f, 1.5e6f, 1e6f}));
   add_rays_of_all_kinds(c, kRays);
   Random random(44);
   for (uint32_t i = 0; i < 2 * kRays; ++i) {

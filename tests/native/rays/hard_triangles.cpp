@@ -19,7 +19,8 @@ void add_square(Triangles& to, float z, float half) {
 void look_down(HardCase& c, float z, float half, uint32_t what, uint32_t count = kRays) {
   Random random(51);
   for (uint32_t i = 0; i < count; ++i)
-    c.add(make_ray({random.between(-half, half), random.between(-half, half), z}, {0, 0, -1}), what);
+    c.add(make_ray({random.between(-half, half), random.between(-half, half), z}, {0, 0, -1}),
+          what);
 }
 
 HardCase slivers() {
@@ -68,7 +69,8 @@ HardCase only_points() {
 // Of several in one place the first is met; behind it (`after`) each of the others once.
 HardCase duplicates() {
   HardCase c;
-  for (int i = 0; i < 7; ++i) c.triangles.push_back(make_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}));
+  for (int i = 0; i < 7; ++i)
+    c.triangles.push_back(make_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}));
   look_down(c, 2, 0.25f, 0);
   for (uint32_t i = 0; i < 7; ++i) {
     TracedRay ray = make_ray({0, 0, 2}, {0, 0, -1}, 2);
@@ -133,7 +135,8 @@ HardCase geometry_at_the_middle() {
   c.triangles.push_back(make_triangle({-1, -1, 0.5f}, {1, -1, -0.5f}, {0, 2, 0}));
   add_rays_of_all_kinds(c, 2 * kRays);
   Random random(56);
-  for (uint32_t i = 0; i < kRays; ++i) c.add(make_ray(glm::vec3(0), random.on_sphere()), kSomething);
+  for (uint32_t i = 0; i < kRays; ++i)
+    c.add(make_ray(glm::vec3(0), random.on_sphere()), kSomething);
   return c;
 }
 
@@ -146,8 +149,8 @@ HardCase crowded_corner() {
   const auto near = [&] { return place + random.in_box(glm::vec3(-0.005f), glm::vec3(0.005f)); };
   for (int i = 0; i < 100'000; ++i) {
     const glm::vec3 a = near();
-    c.triangles.push_back(make_triangle(a, a + 5e-4f * random.on_sphere(),
-                                        a + 5e-4f * random.on_sphere()));
+    c.triangles.push_back(
+        make_triangle(a, a + 5e-4f * random.on_sphere(), a + 5e-4f * random.on_sphere()));
   }
   for (uint32_t i = 0; i < 48; ++i) {
     const glm::vec3 from = random.in_box(glm::vec3(-9), glm::vec3(9));

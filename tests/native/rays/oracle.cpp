@@ -74,7 +74,8 @@ Meeting meet(const TracedRay& ray, uint32_t primitive, const TracedTriangle& tri
     const glm::dvec3 ab = p[1] - p[0], ac = p[2] - p[0];
     const double plane = kRoundings * kUnit * glm::length(ab) * glm::length(ac) * reach;
     m.t = depth / length;
-    m.t_error = (2 * (off + plane) / std::abs(whole) + kRoundings * kUnit * std::abs(depth)) / length;
+    m.t_error =
+        (2 * (off + plane) / std::abs(whole) + kRoundings * kUnit * std::abs(depth)) / length;
   } else {
     // Seen so nearly edge-on that t may be anywhere along the triangle.
     m.t = 0.5 * (nearest + farthest) / length;
@@ -83,13 +84,13 @@ Meeting meet(const TracedRay& ray, uint32_t primitive, const TracedTriangle& tri
 
   const bool starts_here = ray.after != shared::NO_PRIMITIVE && primitive > ray.after;
   const double t_min = ray.t_min, t_max = ray.t_max;
-  const bool surely_after = m.t - m.t_error > t_min || (m.t_error == 0 && m.t == t_min && starts_here);
+  const bool surely_after =
+      m.t - m.t_error > t_min || (m.t_error == 0 && m.t == t_min && starts_here);
   const bool surely_before = m.t + m.t_error <= t_max;
   if (m.t + m.t_error < t_min || m.t - m.t_error > t_max) return m;
   m.near_start = !surely_after;
   m.near_end = !surely_before;
-  m.certainty =
-      inside && surely_after && surely_before ? Meeting::kCertainly : Meeting::kPerhaps;
+  m.certainty = inside && surely_after && surely_before ? Meeting::kCertainly : Meeting::kPerhaps;
   return m;
 }
 
@@ -118,8 +119,8 @@ bool Oracle::allows(const TracedRay& ray, const Found& found, const TracedHit& h
   if (hit.primitive >= found.possible.size()) return false;
   const Meeting& m = found.possible[hit.primitive];
   return m.certainty != Meeting::kNever && m.t - m.t_error <= found.certain_by &&
-         std::abs(hit.t - m.t) <= m.t_error + kUnit * std::abs(m.t) &&
-         hit.t >= ray.t_min && hit.t <= ray.t_max;
+         std::abs(hit.t - m.t) <= m.t_error + kUnit * std::abs(m.t) && hit.t >= ray.t_min &&
+         hit.t <= ray.t_max;
 }
 
 bool Oracle::allows(const TracedRay& ray, const TracedHit& hit, bool any_hit) const {
@@ -141,8 +142,10 @@ Difference Oracle::explain(const TracedRay& ray, const TracedHit& first, const T
     end |= m.near_end;
     edge |= m.near_edge;
   }
-  return start ? Difference::kStart
-               : end ? Difference::kEnd : edge ? Difference::kEdge : Difference::kDepth;
+  return start  ? Difference::kStart
+         : end  ? Difference::kEnd
+         : edge ? Difference::kEdge
+                : Difference::kDepth;
 }
 
 }  // namespace panoptes::test

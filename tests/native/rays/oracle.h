@@ -17,10 +17,12 @@ using shared::TracedRay;
 // One ray with one triangle.
 struct Meeting {
   enum Certainty { kNever, kPerhaps, kCertainly } certainty = kNever;
-  double t = 0, t_error = 0;    // where the ray meets the triangle's plane, and how far off a float32 test may be
-  bool near_edge = false;       // rounding decides whether the ray passes inside
-  bool near_start = false;      // rounding decides whether it lies behind t_min
-  bool near_end = false;        // rounding decides whether it lies before t_max
+  double t = 0,
+         t_error =
+             0;  // where the ray meets the triangle's plane, and how far off a float32 test may be
+  bool near_edge = false;   // rounding decides whether the ray passes inside
+  bool near_start = false;  // rounding decides whether it lies behind t_min
+  bool near_end = false;    // rounding decides whether it lies before t_max
 };
 Meeting meet(const TracedRay& ray, uint32_t primitive, const TracedTriangle& triangle);
 

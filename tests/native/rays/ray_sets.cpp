@@ -66,9 +66,18 @@ RaySet from_points(const std::string& name, const std::vector<SurfacePoint>& poi
 }  // namespace
 
 TracedRay make_ray(const glm::vec3& origin, const glm::vec3& direction, float t_min, float t_max) {
-  return {origin.x,    origin.y,    origin.z,    t_min,
-          direction.x, direction.y, direction.z, t_max,
-          shared::NO_PRIMITIVE, shared::SEEN_BY_ALL, 0, 0};
+  return {origin.x,
+          origin.y,
+          origin.z,
+          t_min,
+          direction.x,
+          direction.y,
+          direction.z,
+          t_max,
+          shared::NO_PRIMITIVE,
+          shared::SEEN_BY_ALL,
+          0,
+          0};
 }
 
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal) {
@@ -103,8 +112,8 @@ RaySet primary_rays(const RayScene& scene, uint32_t count) {
     const double x = 2 * (column + 0.5) / side - 1, y = 2 * (row + 0.5) / side - 1;
     const glm::dvec3 near = unproject(x, y, -1), far = unproject(x, y, 1);
     const bool perspective = scene.projection[3][3] == 0;
-    set.rays.push_back(make_ray(glm::vec3(perspective ? eye : near),
-                                glm::vec3(glm::normalize(far - near))));
+    set.rays.push_back(
+        make_ray(glm::vec3(perspective ? eye : near), glm::vec3(glm::normalize(far - near))));
   }
   return set;
 }
@@ -119,20 +128,23 @@ std::vector<RaySet> secondary_rays(const RayScene& scene, const EmbreeScene& ref
   sets.push_back(from_points("specular", points, count, 1, [&](Random&, const SurfacePoint& p) {
     return make_ray(p.position, mirrored(p));
   }));
-  sets.push_back(from_points("glossy", points, count, 2, [&](Random& random, const SurfacePoint& p) {
-    glm::vec3 direction = lobe(random, mirrored(p), 100.0f);
-    if (glm::dot(direction, p.normal) < 0) direction = glm::reflect(direction, p.normal);
-    return make_ray(p.position, direction);
-  }));
-  sets.push_back(from_points("diffuse", points, count, 3, [&](Random& random, const SurfacePoint& p) {
-    return make_ray(p.position, lobe(random, p.normal, 1.0f));
-  }));
+  sets.push_back(
+      from_points("glossy", points, count, 2, [&](Random& random, const SurfacePoint& p) {
+        glm::vec3 direction = lobe(random, mirrored(p), 100.0f);
+        if (glm::dot(direction, p.normal) < 0) direction = glm::reflect(direction, p.normal);
+        return make_ray(p.position, direction);
+      }));
+  sets.push_back(
+      from_points("diffuse", points, count, 3, [&](Random& random, const SurfacePoint& p) {
+        return make_ray(p.position, lobe(random, p.normal, 1.0f));
+      }));
   // A lamp below the scene's top, a fifth of the scene wide. The end stays before the lamp's plane.
   const glm::vec3 lamp = middle + glm::vec3(0, 0, 0.45f * extent.z);
-  sets.push_back(from_points("shadow", points, count, 4, [&](Random& random, const SurfacePoint& p) {
-    const glm::vec3 across(random.between(-0.1f, 0.1f), random.between(-0.1f, 0.1f), 0);
-    return make_ray(p.position, lamp + across * extent - p.position, 0, 0.999f);
-  }));
+  sets.push_back(
+      from_points("shadow", points, count, 4, [&](Random& random, const SurfacePoint& p) {
+        const glm::vec3 across(random.between(-0.1f, 0.1f), random.between(-0.1f, 0.1f), 0);
+        return make_ray(p.position, lamp + across * extent - p.position, 0, 0.999f);
+      }));
   sets.back().any_hit = true;
   const glm::vec3 outside = middle + extent * glm::vec3(0.7f, -0.9f, 1.7f);
   sets.push_back(from_points("visibility", points, count, 5, [&](Random&, const SurfacePoint& p) {

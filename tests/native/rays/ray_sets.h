@@ -34,8 +34,8 @@ RaySet primary_rays(const RayScene& scene, uint32_t count);
 // the scene; any hit). A scene that the camera does not see gives empty sets.
 std::vector<RaySet> secondary_rays(const RayScene& scene, const EmbreeScene& reference,
                                    uint32_t count);
-// Through the scene's middle, at and along edges and vertices, along edges, corners and diagonals of
-// cubes around the middle, and along the axes.
+// Through the scene's middle, at and along edges and vertices, along edges, corners and diagonals
+// of cubes around the middle, and along the axes.
 std::vector<RaySet> aimed_rays(const RayScene& scene, uint32_t count);
 // All of the above.
 std::vector<RaySet> all_rays(const RayScene& scene, const EmbreeScene& reference, uint32_t count);

@@ -46,8 +46,8 @@ void add_arch(Triangles& to, const glm::vec3& middle, float span) {
   add_surface(to, 24, 10, [&](float u, float v) {
     const float along = 0.5f * kTurn * u, around = kTurn * v;
     const float radius = 0.5f * span + 0.22f * std::cos(around);
-    return middle + glm::vec3(-radius * std::cos(along), 0.3f * std::sin(around),
-                              radius * std::sin(along));
+    return middle +
+           glm::vec3(-radius * std::cos(along), 0.3f * std::sin(around), radius * std::sin(along));
   });
 }
 
@@ -59,8 +59,7 @@ void add_colonnade(Triangles& to, float floor_height, float side) {
     const glm::vec3 head = foot + glm::vec3(0, 0, kColumnHeight);
     add_column(to, foot, kColumnHeight);
     add_box(to, head - glm::vec3(0.5f, 0.5f, 0), head + glm::vec3(0.5f, 0.5f, 0.2f));
-    if (i + 1 < kColumns)
-      add_arch(to, head + glm::vec3(0.5f * kPitch, 0, 0.2f), kPitch);
+    if (i + 1 < kColumns) add_arch(to, head + glm::vec3(0.5f * kPitch, 0, 0.2f), kPitch);
   }
 }
 
@@ -74,8 +73,8 @@ void add_curtain(Triangles& to, float x, float side, float phase) {
 void add_ball(Triangles& to, const glm::vec3& center, float radius) {
   add_surface(to, 40, 20, [&](float u, float v) {
     const float a = u * kTurn, b = 0.5f * v * kTurn;
-    return center + radius * glm::vec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a),
-                                       std::cos(b));
+    return center +
+           radius * glm::vec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b));
   });
 }
 
@@ -105,8 +104,8 @@ RayScene box_room() {
   const auto add_turned_box = [&](const glm::vec2& place, const glm::vec3& size, float angle) {
     Triangles box;
     add_box(box, {-size.x, -size.y, 0}, size);
-    const glm::mat4 to_room = glm::rotate(
-        glm::translate(glm::mat4(1), glm::vec3(place, 0)), angle, glm::vec3(0, 0, 1));
+    const glm::mat4 to_room =
+        glm::rotate(glm::translate(glm::mat4(1), glm::vec3(place, 0)), angle, glm::vec3(0, 0, 1));
     const auto put = [&](const glm::vec3& p) { return glm::vec3(to_room * glm::vec4(p, 1)); };
     for (const TracedTriangle& f : box)
       t.push_back(make_triangle(put(corner(f, 0)), put(corner(f, 1)), put(corner(f, 2))));
@@ -135,11 +134,11 @@ RayScene blob(float time) {
   Triangles t;
   add_surface(t, 400, 200, [&](float u, float v) {
     const float a = u * kTurn, b = 0.5f * v * kTurn;
-    const float swell = 1.0f + 0.2f * std::sin(3 * a + 2 * time) * std::sin(b) +
-                        0.1f * std::sin(5 * b + 3 * time);
+    const float swell =
+        1.0f + 0.2f * std::sin(3 * a + 2 * time) * std::sin(b) + 0.1f * std::sin(5 * b + 3 * time);
     const float twist = a + 1.5f * std::cos(b) * std::sin(time);
-    return swell * glm::vec3(std::sin(b) * std::cos(twist), std::sin(b) * std::sin(twist),
-                             std::cos(b));
+    return swell *
+           glm::vec3(std::sin(b) * std::cos(twist), std::sin(b) * std::sin(twist), std::cos(b));
   });
   return finish("blob", std::move(t), {0.5f, -3.2f, 1.2f}, {0, 0, 0}, 0.8f);
 }

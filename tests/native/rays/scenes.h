@@ -1,6 +1,7 @@
 // Scenes that rays are traced through: generated ones, and snapshots of .blend files.
 //
-// Positions are relative to the middle of the scene's bounds, as the list of all triangles has them.
+// Positions are relative to the middle of the scene's bounds, as the list of all triangles has
+// them.
 #pragma once
 
 #include "gpu_scene/view.h"
@@ -18,8 +19,8 @@ struct RayScene {
   glm::dmat4 camera_from_scene{1.0}, projection{1.0};  // as gpu_scene::Camera has them
 };
 
-// A two-storeyed hall with columns, arches, curtains and balls, much like the Sponza atrium: 206 372
-// triangles of all sizes, the camera inside.
+// A two-storeyed hall with columns, arches, curtains and balls, much like the Sponza atrium: 206
+// 372 triangles of all sizes, the camera inside.
 RayScene atrium();
 // A room of 2 m with a lamp and two boxes: 36 triangles.
 RayScene box_room();

@@ -21,7 +21,8 @@ struct Traced {
   std::vector<TracedHit> hits;
   std::vector<TracedWork> work;  // with count_work
   int dispatches = 0;
-  double wall_ms = 0, cpu_ms = 0;  // of the dispatches alone; cpu: of the process, an average core's
+  double wall_ms = 0,
+         cpu_ms = 0;  // of the dispatches alone; cpu: of the process, an average core's
 };
 
 // Milliseconds of wall clock, and of the process' CPU time divided by the cores: on a busy machine
@@ -44,8 +45,7 @@ class TracingDevice {
   void assign(const Triangles& triangles) { triangles_.assign(triangles); }
   void build(tracing::Tracer& tracer);
   Traced trace(const tracing::Tracer& tracer, std::span<const TracedRay> rays,
-               const tracing::TraceOptions& options = {},
-               int budget = tracing::RayWaves::kBudget);
+               const tracing::TraceOptions& options = {}, int budget = tracing::RayWaves::kBudget);
 
   const gl::DeviceInfo& device() const { return context_.device(); }
   // Of the passes of all builds since the last call.

@@ -10,8 +10,9 @@ TracedTriangle make_triangle(const glm::vec3& a, const glm::vec3& b, const glm::
 }
 
 glm::vec3 corner(const TracedTriangle& t, int k) {
-  return k == 0 ? glm::vec3(t.x0, t.y0, t.z0)
-                : k == 1 ? glm::vec3(t.x1, t.y1, t.z1) : glm::vec3(t.x2, t.y2, t.z2);
+  return k == 0   ? glm::vec3(t.x0, t.y0, t.z0)
+         : k == 1 ? glm::vec3(t.x1, t.y1, t.z1)
+                  : glm::vec3(t.x2, t.y2, t.z2);
 }
 
 scene::Bounds bounds_of(const Triangles& triangles) {

@@ -1,4 +1,5 @@
-// Lists of triangles as tracers take them, and the pieces that test scenes are made of. Metres, z up.
+// Lists of triangles as tracers take them, and the pieces that test scenes are made of. Metres, z
+// up.
 #pragma once
 
 #include "scene/scene.h"

@@ -1,5 +1,5 @@
-// What a frame costs where geometry changes in each: the structure is built anew, then every pixel's
-// rays are traced.
+// What a frame costs where geometry changes in each: the structure is built anew, then every
+// pixel's rays are traced.
 #include "rays/ray_sets.h"
 #include "rays_bench/reports.h"
 
@@ -25,17 +25,17 @@ constexpr int kBuilds = 3;
 FrameCost embree_cost(TracingDevice& device, const RayScene& scene, const std::vector<RaySet>& sets,
                       RTCBuildQuality quality) {
   FrameCost cost;
-  cost.build = fair(
-      median_time(kBuilds, [&] { EmbreeScene(scene.triangles, false, quality); }), device.device());
+  cost.build = fair(median_time(kBuilds, [&] { EmbreeScene(scene.triangles, false, quality); }),
+                    device.device());
   const EmbreeScene embree(scene.triangles, false, quality);
   for (const RaySet& set : sets)
-    cost.trace[set.name] = fair(
-        median_time(kBuilds, [&] { embree.trace(set.rays, set.any_hit); }), device.device());
+    cost.trace[set.name] =
+        fair(median_time(kBuilds, [&] { embree.trace(set.rays, set.any_hit); }), device.device());
   return cost;
 }
 
-// Of all chosen tracers, of Embree, and of tracing with our hierarchy what Embree would build: the fastest
-// builder of such trees there is.
+// Of all chosen tracers, of Embree, and of tracing with our hierarchy what Embree would build: the
+// fastest builder of such trees there is.
 FrameCosts frame_costs(TracingDevice& device, const BenchOptions& options, const RayScene& scene,
                        uint32_t rays) {
   const EmbreeScene reference(scene.triangles);
@@ -58,25 +58,24 @@ FrameCosts frame_costs(TracingDevice& device, const BenchOptions& options, const
   const FrameCost low = embree_cost(device, scene, sets, RTC_BUILD_QUALITY_LOW);
   for (size_t i = 0; i < costs.size(); ++i)
     if (costs[i].first == kYardstick) {
-      costs.push_back({"Embree low builds, bvh traces", costs[i].second});
+      costs.push_back({"Embree low builds, BVH2 traces", costs[i].second});
       costs.back().second.build = low.build;
       break;
     }
   costs.emplace_back("Embree low", low);
-  costs.emplace_back("Embree medium",
-                     embree_cost(device, scene, sets, RTC_BUILD_QUALITY_MEDIUM));
+  costs.emplace_back("Embree medium", embree_cost(device, scene, sets, RTC_BUILD_QUALITY_MEDIUM));
   return costs;
 }
 
 }  // namespace
 
-std::vector<Table> figure_7_8(TracingDevice& device, const BenchOptions& options) {
-  std::vector<Table> tables;
+void figure_7_8(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   for (const std::string& name : options.scenes) {
     const RayScene scene = load_scene(name);
-    Table table{fmt::format("Figure 7.8, {}: {} triangles, ms a frame", scene.name, scene.triangles.size()),
-                {"tracer", "side", "build", "primary + shadow", "frame", "primary + diffuse", "frame",
-                 "and 2 shadow", "frame"},
+    Table table{fmt::format("Figure 7.8, {}: {} triangles, ms a frame", scene.name,
+                            scene.triangles.size()),
+                {"tracer", "side", "build", "primary + shadow", "frame", "primary + diffuse",
+                 "frame", "and 2 shadow", "frame"},
                 {}};
     const uint32_t most = uint32_t(std::sqrt(double(options.rays)));
     for (uint32_t side = std::max(most / 8, 8u); side <= most; side *= 2)
@@ -90,12 +89,11 @@ std::vector<Table> figure_7_8(TracingDevice& device, const BenchOptions& options
         table.add({tracer, double(side), cost.build, direct, cost.build + direct, paths,
                    cost.build + paths, both, cost.build + both});
       }
-    tables.push_back(std::move(table));
+    emit(table);
   }
-  return tables;
 }
 
-std::vector<Table> deform_report(TracingDevice& device, const BenchOptions& options) {
+void deform_report(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   std::vector<RayScene> frames;
   for (const std::string& name : options.scenes) frames.push_back(load_scene(name));
   if (frames.empty())
@@ -112,17 +110,19 @@ std::vector<Table> deform_report(TracingDevice& device, const BenchOptions& opti
         sums[i].second.trace[set] += ms / double(frames.size());
     }
   }
-  Table table{fmt::format("{} deforming, mean of {} frames: {} triangles, {} rays a set, ms a frame",
-                          frames.front().name, frames.size(), frames.front().triangles.size(),
-                          options.rays),
-              {"tracer", "build", "primary", "shadow", "diffuse", "frame"},
-              {}};
+  Table
+      table{fmt::format("{} deforming, mean of {} frames: {} triangles, {} rays a set, ms a frame",
+                        frames.front().name, frames.size(), frames.front().triangles.size(),
+                        options.rays),
+            {"tracer", "build", "primary", "shadow", "diffuse", "frame"},
+            {}};
   for (auto& [tracer, cost] : sums) {
     const double primary = cost.trace["primary"], shadow = cost.trace["shadow"],
                  diffuse = cost.trace["diffuse"];
-    table.add({tracer, cost.build, primary, shadow, diffuse, cost.build + primary + shadow + diffuse});
+    table.add(
+        {tracer, cost.build, primary, shadow, diffuse, cost.build + primary + shadow + diffuse});
   }
-  return {table};
+  emit(table);
 }
 
 }  // namespace panoptes::test

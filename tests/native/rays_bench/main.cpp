@@ -4,31 +4,36 @@
 
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 namespace panoptes::test {
 namespace {
 
-std::vector<Table> report(TracingDevice& device, const BenchOptions& options) {
+void report(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   switch (options.report) {
-    case BenchReport::kSpeed: return speed_report(device, options);
-    case BenchReport::kTable71: return table_7_1(device, options);
-    case BenchReport::kFigure78: return figure_7_8(device, options);
-    case BenchReport::kFigure710: return figure_7_10(device, options);
-    case BenchReport::kDeform: return deform_report(device, options);
+    case BenchReport::kSpeed: return speed_report(device, options, emit);
+    case BenchReport::kTable71: return table_7_1(device, options, emit);
+    case BenchReport::kTable73: return table_7_3(device, options, emit);
+    case BenchReport::kFigure78: return figure_7_8(device, options, emit);
+    case BenchReport::kFigure710: return figure_7_10(device, options, emit);
+    case BenchReport::kDeform: return deform_report(device, options, emit);
   }
-  return {};
 }
 
 void run(const BenchOptions& options) {
   TracingDevice device;
-  const std::string name = device.device().renderer;
-  const std::vector<Table> tables = report(device, options);
-  if (options.json) {
-    std::fputs(as_json(name, tables).c_str(), stdout);
+  std::string name = device.device().renderer;
+  if (!options.json) {
+    report(device, options, [&name](const Table& table) {
+      if (!name.empty()) fmt::print("{}\n", std::exchange(name, {}));  // above the first one
+      fmt::print("\n{}", as_text(table));
+      std::fflush(stdout);
+    });
     return;
   }
-  fmt::print("{}\n", name);
-  for (const Table& table : tables) fmt::print("\n{}", as_text(table));
+  std::vector<Table> tables;
+  report(device, options, [&tables](const Table& table) { tables.push_back(table); });
+  std::fputs(as_json(name, tables).c_str(), stdout);
 }
 
 }  // namespace
@@ -38,8 +43,10 @@ int main(int count, char** words) {
   using namespace panoptes::test;
   try {
     const BenchOptions options = parse_bench_options({words + 1, words + count});
-    if (options.help) std::fputs(kBenchUsage, stdout);
-    else run(options);
+    if (options.help)
+      std::fputs(kBenchUsage, stdout);
+    else
+      run(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "panoptes: {}\n", error.what());
     return 1;

@@ -9,18 +9,18 @@ namespace panoptes::test {
 
 const char* const kBenchUsage =
     "usage: ./panoptes bench rays [options]\n"
-    "Builds and traces with each ray tracer beside Embree, in one run, and compares what they find.\n"
+    "Builds and traces with each ray tracer beside Embree and compares what they find.\n"
     "\n"
-    "  --scene NAME|FILE     a generated scene (atrium, box_room, soup, blob, grass), a .blend or a\n"
-    "                        snapshot; may be repeated. Default: all that are generated\n"
+    "  --scene NAME|FILE     a generated scene (atrium, box_room, soup, blob, grass), a .blend\n"
+    "                        or a snapshot; may be repeated. Default: all that are generated\n"
     "  --tracer NAME         one tracer; may be repeated. Default: all\n"
     "  --set NAME            one set of rays; may be repeated. Default: all\n"
     "  --rays N              rays a set (default 1000000)\n"
     "  --judge N             differences from Embree that are looked into, a set (default 200)\n"
     "  --table 7.1 | 7.3     the thesis' tables with our figures: rays of all kinds; memory\n"
     "  --figure 7.8 | 7.10   its figures: frames of growing size; buckets and tiles\n"
-    "  --deform              frames of a deforming scene, each built anew: give them by --scene in\n"
-    "                        order, or one .blend with --frames FIRST:LAST\n"
+    "  --deform              frames of a deforming scene, each built anew: give them in order\n"
+    "                        by --scene, or one .blend with --frames FIRST:LAST\n"
     "  --json                print JSON\n";
 
 namespace {
@@ -47,21 +47,36 @@ BenchOptions parse_bench_options(const std::vector<std::string>& words) {
       if (i + 1 >= words.size()) fail("{} needs a value: see --help", word);
       return words[++i];
     };
-    if (word == "--scene") o.scenes.push_back(value());
-    else if (word == "--tracer") o.tracers.push_back(value());
-    else if (word == "--set") o.sets.push_back(value());
-    else if (word == "--rays") o.rays = whole(word, value());
-    else if (word == "--judge") o.judged = whole(word, value());
-    else if (word == "--deform") o.report = BenchReport::kDeform;
-    else if (word == "--json") o.json = true;
-    else if (word == "-h" || word == "--help") o.help = true;
+    if (word == "--scene")
+      o.scenes.push_back(value());
+    else if (word == "--tracer")
+      o.tracers.push_back(value());
+    else if (word == "--set")
+      o.sets.push_back(value());
+    else if (word == "--rays")
+      o.rays = whole(word, value());
+    else if (word == "--judge")
+      o.judged = whole(word, value());
+    else if (word == "--deform")
+      o.report = BenchReport::kDeform;
+    else if (word == "--json")
+      o.json = true;
+    else if (word == "-h" || word == "--help")
+      o.help = true;
     else if (word == "--table" || word == "--figure") {
       const std::string which = word.substr(2) + " " + value();
-      if (which == "table 7.1") o.report = BenchReport::kTable71;
-      else if (which == "figure 7.8") o.report = BenchReport::kFigure78;
-      else if (which == "figure 7.10") o.report = BenchReport::kFigure710;
-      else fail("there is no report for {}: choose --table 7.1 or --figure 7.8, 7.10", which);
-    } else fail("bench rays does not know '{}': see --help", word);
+      if (which == "table 7.1")
+        o.report = BenchReport::kTable71;
+      else if (which == "table 7.3")
+        o.report = BenchReport::kTable73;
+      else if (which == "figure 7.8")
+        o.report = BenchReport::kFigure78;
+      else if (which == "figure 7.10")
+        o.report = BenchReport::kFigure710;
+      else
+        fail("there is no report for {}: choose --table 7.1, 7.3 or --figure 7.8, 7.10", which);
+    } else
+      fail("bench rays does not know '{}': see --help", word);
   }
   if (o.scenes.empty() && o.report != BenchReport::kDeform) o.scenes = generated_scene_names();
   return o;

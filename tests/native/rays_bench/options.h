@@ -7,7 +7,7 @@
 
 namespace panoptes::test {
 
-enum class BenchReport { kSpeed, kTable71, kFigure78, kFigure710, kDeform };
+enum class BenchReport { kSpeed, kTable71, kTable73, kFigure78, kFigure710, kDeform };
 
 struct BenchOptions {
   BenchReport report = BenchReport::kSpeed;

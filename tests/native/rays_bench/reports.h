@@ -1,4 +1,4 @@
-// The reports of the benchmark: each measures and returns tables.
+// The reports of the benchmark: each measures and hands over tables as they are ready.
 #pragma once
 
 #include "rays/scenes.h"
@@ -17,6 +17,8 @@ struct Milliseconds {
 };
 // Medians of `repeats` runs.
 Milliseconds median_time(int repeats, const std::function<void()>& run);
+// The least of three runs.
+Milliseconds least_time(const std::function<void()>& run);
 // The one to compare: on a software renderer CPU time, which others on the machine do not disturb;
 // with a GPU, wall clock.
 double fair(const Milliseconds& time, const gl::DeviceInfo& device);
@@ -33,15 +35,19 @@ struct Speed {
 Speed trace_speed(TracingDevice& device, const tracing::Tracer& tracer,
                   const std::vector<TracedRay>& rays, bool any_hit);
 
+using Emit = std::function<void(const Table&)>;
+
 // Builds and rays of each scene, by tracer, with mismatches.
-std::vector<Table> speed_report(TracingDevice& device, const BenchOptions& options);
+void speed_report(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Thesis, Table 7.1: Mrays/s by kind of ray.
-std::vector<Table> table_7_1(TracingDevice& device, const BenchOptions& options);
+void table_7_1(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Table 7.3: the formula of its memory beside what is allocated.
+void table_7_3(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Thesis, Figure 7.8: build and trace of frames of growing size where geometry changes each frame.
-std::vector<Table> figure_7_8(TracingDevice& device, const BenchOptions& options);
+void figure_7_8(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Thesis, Figure 7.10: memory, build and trace by tiles and buckets.
-std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& options);
+void figure_7_10(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 // Frames of a deforming scene, everything built anew for each.
-std::vector<Table> deform_report(TracingDevice& device, const BenchOptions& options);
+void deform_report(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 
 }  // namespace panoptes::test

@@ -25,8 +25,10 @@ std::string quoted(const std::string& words) {
   std::string out = "\"";
   for (char c : words) {
     if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) >= 0x20) out += c;
-    else out += fmt::format("\\u{:04x}", int(c));
+    if (static_cast<unsigned char>(c) >= 0x20)
+      out += c;
+    else
+      out += fmt::format("\\u{:04x}", int(c));
   }
   return out + '"';
 }

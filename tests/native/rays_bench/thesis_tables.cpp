@@ -1,3 +1,4 @@
+#include "primitive_tracer/cube_tracer.h"
 #include "rays/ray_sets.h"
 #include "rays_bench/reports.h"
 
@@ -21,7 +22,7 @@ Cell mrays(TracingDevice& device, const tracing::Tracer& tracer, const RaySet& s
 
 }  // namespace
 
-std::vector<Table> table_7_1(TracingDevice& device, const BenchOptions& options) {
+void table_7_1(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   const std::vector<std::string> kinds{"visibility", "specular", "glossy", "diffuse"};
   Table table{"Table 7.1: Mrays/s by kind of ray", {"scene", "primitives", "tracer"}, {}};
   table.columns.insert(table.columns.end(), kinds.begin(), kinds.end());
@@ -40,11 +41,41 @@ std::vector<Table> table_7_1(TracingDevice& device, const BenchOptions& options)
       table.add(std::move(row));
     }
   }
-  return {table};
+  emit(table);
 }
 
-std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& options) {
-  std::vector<Table> tables;
+void table_7_3(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
+  // Bytes, from the thesis' table and the text below it.
+  constexpr double kNode = 8, kBounds = 8, kHead = 4, kHit = 4 + 32;
+  primitive_tracer::CubeSettings settings;
+  settings.linked_lists = true;
+  for (const std::string& name : options.scenes) {
+    const RayScene scene = load_scene(name);
+    device.assign(scene.triangles);
+    primitive_tracer::CubeTracer tracer(settings);
+    device.build(tracer);
+    const auto parts = tracer.bytes_of_parts();
+    const double tiles = 6.0 * tracer.tiles() * tracer.tiles(), ids = tracer.counts().ids;
+    Table table{
+        fmt::format("Table 7.3, {}: the cube with linked lists, 6 x {} x {} tiles, {} buckets; "
+                    "c n_p = {:.3g} a tile",
+                    scene.name, tracer.tiles(), tracer.tiles(), settings.buckets, ids / tiles),
+        {"memory", "formula", "MB by formula", "MB allocated"},
+        {}};
+    table.add({"depth bounds, mipmapped", "8 x 1.33 a tile", kMega * tiles * kBounds * 4 / 3,
+               kMega * double(parts.depth_bounds)});
+    table.add({"id buffer: buckets", "4 B a tile", kMega * tiles * kHead * settings.buckets,
+               kMega * double(parts.buckets)});
+    table.add(
+        {"id buffer: lists", "8 c n_p a tile", kMega * ids * kNode, kMega * double(parts.ids)});
+    table.add({"hit buffer", "4 + 32 a ray", kMega * options.rays * kHit,
+               kMega * options.rays * double(sizeof(TracedHit))});
+    table.add({"rays", "none", 0.0, kMega * options.rays * double(sizeof(TracedRay))});
+    emit(table);
+  }
+}
+
+void figure_7_10(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   for (const std::string& name : options.scenes) {
     const RayScene scene = load_scene(name);
     const EmbreeScene embree(scene.triangles);
@@ -57,20 +88,21 @@ std::vector<Table> figure_7_10(TracingDevice& device, const BenchOptions& option
     for (const RaySet& set : secondary) table.columns.push_back(set.name);
     for (const TracerVariant& variant : tracer_variants()) {
       const auto& wanted = options.tracers;
-      if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), variant.tracer) == wanted.end())
+      if (!wanted.empty() &&
+          std::find(wanted.begin(), wanted.end(), variant.tracer) == wanted.end())
         continue;
       const auto tracer = variant.make();
       device.build(*tracer);
       const double build =
           fair(median_time(kBuilds, [&] { device.build(*tracer); }), device.device());
-      std::vector<Cell> row{variant.tracer, double(variant.tiles), variant.buckets,
-                            double(tracer->bytes()) * kMega, build, mrays(device, *tracer, primary)};
+      std::vector<Cell> row{variant.tracer,  double(variant.tiles),
+                            variant.buckets, double(tracer->bytes()) * kMega,
+                            build,           mrays(device, *tracer, primary)};
       for (const RaySet& set : secondary) row.push_back(mrays(device, *tracer, set));
       table.add(std::move(row));
     }
-    tables.push_back(std::move(table));
+    emit(table);
   }
-  return tables;
 }
 
 }  // namespace panoptes::test
