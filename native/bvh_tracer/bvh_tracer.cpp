@@ -20,7 +20,7 @@ void check_room(size_t count, size_t bytes_each, const gl::DeviceInfo& device, c
 }  // namespace
 
 void BvhTracer::build(const tracing::TriangleList& list, gl::ProgramCache&, gl::PassTimer& timer) {
-  const gl::PassScope scope(timer, "hierarchy");
+  const gl::PassScope scope(timer, "structure_hierarchy");
   nodes_ = gl::Texture(), triangles_ = gl::Texture();
   node_buffer_ = gl::Buffer(), triangle_buffer_ = gl::Buffer();  // before new ones take memory
 

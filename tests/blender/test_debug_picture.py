@@ -27,8 +27,9 @@ def test_request(scene, recorder):
     scene.panoptes.debug_picture = 'tiles'
     bpy.ops.render.render()
     plain, debug = (arguments[0] for arguments in recorder.arguments('render'))
-    assert 'debug_picture' not in plain['settings'] and plain['samples'] == (2, 9)
+    assert not {'debug_picture', 'structure'} & plain['settings'].keys() and plain['samples'] == (2, 9)
     assert debug['settings']['debug_picture'] == 'tiles' and debug['samples'] == (0, 1)
+    assert (debug['settings']['structure'], debug['settings']['tiles'], debug['settings']['buckets']) == ('auto', 0, 0)
 
 
 class TestForReal:
@@ -48,6 +49,16 @@ class TestForReal:
             # The cubes are in the middle of each half, the world in the corners.
             assert picture[12, 8, :3].any() and picture[12, 24, :3].any()
             assert all(not np.allclose(picture, other) for other in pictures)
+            pictures.append(picture)
+
+    def test_each_structure(self, scene, tmp_path):
+        things()
+        scene.panoptes.debug_picture = 'steps'
+        pictures = []
+        for structure in ('orthographic', 'cube', 'bvh'):
+            scene.panoptes.primitive.structure = structure
+            picture = render_combined(scene, tmp_path)
+            assert picture[12, 8, :3].any() and all(not np.allclose(picture, other) for other in pictures)
             pictures.append(picture)
 
     def test_nothing_is_left_of_it(self, scene, tmp_path):

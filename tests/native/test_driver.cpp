@@ -108,6 +108,7 @@ TEST_F(Driver, MistakesAreOneSentence) {
   for (const char* samples : {"0", "-1", "1.5", "many", "99999999999"})
     expect_refused(fmt::format("life.scene --samples {}", samples), "--samples");
   expect_refused("life.scene --size 100000x2", "100000x2");
+  expect_refused("life.scene --structure tree", "auto, orthographic, cube, lists, bvh");
   expect_refused("life.scene --debug everything", "none, steps, tests, lists, tiles");
   std::ofstream(file("text")) << "no snapshot at all, but long enough for a head";
   expect_refused("text", "no Panoptes snapshot");

@@ -149,6 +149,43 @@ std::pair<bool, bool> made(const Picture& picture) {
   return result;
 }
 
+// Each structure is another, made and measured on the way; which one makes no difference to where
+// rays end.
+TEST(RayPicture, ShowsTheStructureThatIsChosen) {
+  using engine::Structure;
+  const StillLife life = still_life();
+  std::vector<Picture> pictures;
+  // (Lists in one array and linked ones are in the same cells, and take as many steps.)
+  for (Structure structure :
+       {Structure::kOrthographic, Structure::kCube, Structure::kBvh, Structure::kAuto}) {
+    engine::RenderRequest r = debug_request(Kind::kSteps, life.camera);
+    r.structure.structure = structure;
+    pictures.push_back(render(life.scene, r));
+    if (structure == Structure::kAuto) break;
+    EXPECT_TRUE(made(pictures.back()).second) << int(structure);
+    for (size_t i = 0; i + 1 < pictures.size(); ++i)
+      EXPECT_NE(pictures[i][Pass::kCombined], pictures.back()[Pass::kCombined]) << int(structure);
+  }
+  // What is left to us is one of them.
+  EXPECT_TRUE(pictures.back()[Pass::kCombined] == pictures[0][Pass::kCombined] ||
+              pictures.back()[Pass::kCombined] == pictures[2][Pass::kCombined]);
+
+  engine::RenderRequest lists = debug_request(Kind::kSteps, life.camera);
+  lists.structure.structure = Structure::kLists;
+  const Picture linked = render(lists);
+  EXPECT_TRUE(made(linked).second);
+  EXPECT_EQ(linked[Pass::kCombined], pictures[1][Pass::kCombined]);
+
+  // Other tiles make another picture, and build anew; the same again build nothing.
+  engine::RenderRequest r = debug_request(Kind::kTiles, life.camera);
+  r.structure = {Structure::kOrthographic, 4, 0};
+  const Picture coarse = render(r);
+  EXPECT_TRUE(made(coarse).second);
+  EXPECT_FALSE(made(render(r)).second);
+  r.structure.tiles = 64;
+  EXPECT_NE(render(r)[Pass::kCombined], coarse[Pass::kCombined]);
+}
+
 TEST(RayPicture, KeepsTheStructureWhileGeometryRests) {
   const StillLife life = still_life();
   const auto frame = [&](Kind kind, double eye) {

@@ -37,6 +37,9 @@ void expect_refused(F change, const std::string& part) {
 
 TEST(RequestCheck, RefusesWhatMakesNoSense) {
   expect_refused([](auto& r) { r.debug_picture = ray_picture::Kind(17); }, "debug picture number 17");
+  expect_refused([](auto& r) { r.structure.structure = engine::Structure(9); }, "structure number 9");
+  expect_refused([](auto& r) { r.structure.tiles = 2000; }, "2000 tiles");
+  expect_refused([](auto& r) { r.structure.buckets = -1; }, "-1 buckets");
   expect_refused([](auto& r) { r.last_sample = 0; }, "at least one sample");
   expect_refused([](auto& r) { r.first_sample = r.last_sample = 5; }, "at least one sample");
   expect_refused([](auto& r) { r.first_sample = 7; }, "at least one sample");

@@ -56,6 +56,7 @@ class Snapshot : public ::testing::Test {
     request.noise_threshold = 0.125;
     request.force_all_effects = true;
     request.debug_picture = ray_picture::Kind::kLists;
+    request.structure = {engine::Structure::kCube, 64, 3};
   }
   ~Snapshot() override { fs::remove_all(folder); }
 
@@ -170,6 +171,7 @@ TEST_F(Snapshot, GivesTheSameSceneAndRequestBack) {
   EXPECT_TRUE(r.transparent_film);
   EXPECT_EQ(r.shadow_resolution, request.shadow_resolution);
   EXPECT_EQ(r.debug_picture, request.debug_picture);
+  EXPECT_EQ(r.structure, request.structure);
   EXPECT_EQ(r.time_budget, 2.5);
   EXPECT_EQ(r.noise_threshold, 0.125);
   EXPECT_FALSE(fs::exists(path + ".part"));
