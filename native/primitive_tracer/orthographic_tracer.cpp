@@ -24,7 +24,7 @@ uint32_t entry_limit(uint32_t triangles) {
 }
 
 int chosen_tiles(uint32_t triangles) {
-  const double side = std::sqrt(triangles / 8.0);
+  const double side = std::sqrt(triangles / 24.0);
   return std::clamp(int(std::bit_floor(unsigned(side))), 1, 512);
 }
 
