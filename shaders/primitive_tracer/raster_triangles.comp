@@ -19,7 +19,7 @@ const float CELL_REACH = 0.52;   // half a cell and a margin for rounding
 const float BLOCK_REACH = 4.1;
 
 void main() {
-  uint primitive = invocation();
+  uint primitive = spread_invocation(16u);
   if (primitive >= triangle_count || too_many_entries()) return;
   for (uint views = views_of(primitive); views != 0u; views &= views - 1u) {
     uint view = uint(findLSB(views));

@@ -123,7 +123,7 @@ void main() {
   if (i >= counters.lists[CROWDED_LISTS]) return;
   uint node = order[lists_before(CROWDED_LISTS) + i];
 #else
-  uint i = spread_invocation();
+  uint i = spread_invocation(1u);
   if (i >= lists_before(CROWDED_LISTS)) return;
   uint node = order[i];
 #endif

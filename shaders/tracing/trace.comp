@@ -37,7 +37,7 @@ Ray fetch_ray(uint i) {
 }
 
 void main() {
-  uint slot = spread_invocation();
+  uint slot = spread_invocation(1u);
   if (slot >= count) return;
 #if RESUMED
   uint word = slot * SAVED_WORDS;
