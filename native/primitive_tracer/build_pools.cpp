@@ -64,16 +64,10 @@ void BuildPools::begin(const PoolSizes& at_least, uint32_t triangles, uint32_t d
   triangles_ = triangles;
   dense_ = dense;
   entry_limit_ = entry_limit;
-  const auto reserve = [](gl::Buffer& buffer, int64_t bytes) {
-    if (buffer.bytes() >= bytes) return false;
-    buffer = gl::Buffer();
-    buffer = gl::Buffer(bytes);
-    return true;
-  };
-  if (reserve(entries_, int64_t(sizes_.entries) * entry_bytes))
+  if (entries_.reserve(int64_t(sizes_.entries) * entry_bytes))
     entries_texture_ = gl::Texture(entry_bytes == 8 ? GL_RG32UI : GL_RGBA32UI, entries_);
-  reserve(blocks_, int64_t(sizes_.blocks) * int64_t(sizeof(shared::RasterBlock)));
-  reserve(counters_, sizeof(shared::BuildCounters));
+  blocks_.reserve(int64_t(sizes_.blocks) * int64_t(sizeof(shared::RasterBlock)));
+  counters_.reserve(sizeof(shared::BuildCounters));
   counters_.clear();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

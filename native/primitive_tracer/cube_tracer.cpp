@@ -112,20 +112,14 @@ void CubeTracer::place(const scene::Bounds& bounds, int tiles) {
 }
 
 void CubeTracer::reserve() {
-  const auto grow = [](gl::Buffer& buffer, int64_t bytes) {
-    if (buffer.bytes() >= bytes) return false;
-    buffer = gl::Buffer();
-    buffer = gl::Buffer(bytes);
-    return true;
-  };
   const PoolSizes& sizes = pools_.sizes();
   const bool linked = settings_.linked_lists;
-  if (grow(nodes_, nodes() * (linked ? 8 : 16)))
+  if (nodes_.reserve(nodes() * (linked ? 8 : 16)))
     node_texture_ = gl::Texture(linked ? GL_RG32UI : GL_RGBA32UI, nodes_);
-  grow(ranges_, base_tiles() * int64_t(sizeof(shared::TileRange)));
-  if (grow(offsets_, linked ? base_tiles() * settings_.buckets * 4 : int64_t(sizes.offsets) * 4))
+  ranges_.reserve(base_tiles() * int64_t(sizeof(shared::TileRange)));
+  if (offsets_.reserve(linked ? base_tiles() * settings_.buckets * 4 : int64_t(sizes.offsets) * 4))
     offset_texture_ = gl::Texture(GL_R32UI, offsets_);
-  if (grow(ids_, int64_t(sizes.ids) * (linked ? 8 : 4)))
+  if (ids_.reserve(int64_t(sizes.ids) * (linked ? 8 : 4)))
     id_texture_ = gl::Texture(linked ? GL_RG32UI : GL_R32UI, ids_);
 }
 

@@ -97,19 +97,13 @@ void OrthographicTracer::place(const scene::Bounds& bounds, int tiles) {
 }
 
 void OrthographicTracer::reserve() {
-  const auto grow = [](gl::Buffer& buffer, int64_t bytes) {
-    if (buffer.bytes() >= bytes) return false;
-    buffer = gl::Buffer();
-    buffer = gl::Buffer(bytes);
-    return true;
-  };
   const PoolSizes& sizes = pools_.sizes();
   const int64_t nodes = int64_t(view_.grid.w) + view_.grid.y * view_.grid.y + sizes.nodes;
-  if (grow(nodes_, nodes * 16)) node_texture_ = gl::Texture(GL_RGBA32UI, nodes_);
-  grow(order_, (nodes - view_.grid.w) * 4);
-  grow(lists_, nodes * int64_t(sizeof(shared::NodeList)));
-  if (grow(offsets_, int64_t(sizes.offsets) * 4)) offset_texture_ = gl::Texture(GL_R32UI, offsets_);
-  if (grow(ids_, int64_t(sizes.ids) * 4)) id_texture_ = gl::Texture(GL_R32UI, ids_);
+  if (nodes_.reserve(nodes * 16)) node_texture_ = gl::Texture(GL_RGBA32UI, nodes_);
+  order_.reserve((nodes - view_.grid.w) * 4);
+  lists_.reserve(nodes * int64_t(sizeof(shared::NodeList)));
+  if (offsets_.reserve(int64_t(sizes.offsets) * 4)) offset_texture_ = gl::Texture(GL_R32UI, offsets_);
+  if (ids_.reserve(int64_t(sizes.ids) * 4)) id_texture_ = gl::Texture(GL_R32UI, ids_);
 }
 
 void OrthographicTracer::build(const tracing::TriangleList& triangles, gl::ProgramCache& programs,

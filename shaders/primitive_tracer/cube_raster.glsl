@@ -2,6 +2,7 @@
 // that the triangle has there (thesis, section 7.3.1.1), as the plane over the tile gives it, which
 // is what clipping to the tile's frustum is for.
 #include "primitive_tracer/cube.glsl"
+#include "primitive_tracer/edges.glsl"
 
 layout(std430, binding = 4) buffer Ranges { uint range_words[]; };  // as TileRange
 
@@ -159,12 +160,8 @@ bool place(uint primitive, uint view_number, out Placed placed, out ivec4 cells)
 }
 
 bool overlaps(Placed placed, vec2 centre, float half_size) {
-  vec3 at = vec3(centre, 1.0);
-  vec3 e = vec3(dot(placed.edge0, at), dot(placed.edge1, at), dot(placed.edge2, at));
-  vec3 reach = half_size * vec3(abs(placed.edge0.x) + abs(placed.edge0.y),
-                                abs(placed.edge1.x) + abs(placed.edge1.y),
-                                abs(placed.edge2.x) + abs(placed.edge2.y)) + placed.slack;
-  return all(greaterThanEqual(e, -reach)) || (placed.edge_on && all(lessThanEqual(e, reach)));
+  return edges_reach(placed.edge0, placed.edge1, placed.edge2, placed.slack, placed.edge_on,
+                     centre, half_size);
 }
 
 // cube_raster.geom emits no entries.

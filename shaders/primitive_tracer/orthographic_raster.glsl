@@ -2,6 +2,7 @@
 // by part. They run twice, first (LISTED 0) to count the triangles of each node, then to list them
 // with the range of depths that each has there: rasterising again is cheaper than a stream of
 // entries through memory, whose every place costs an atomic that all threads want.
+#include "primitive_tracer/edges.glsl"
 #include "primitive_tracer/orthographic.glsl"
 
 layout(binding = 1) uniform usamplerBuffer nodes;
@@ -65,13 +66,9 @@ bool place(uint primitive, uint view, out Placed placed, out ivec4 cells) {
 }
 
 bool overlaps(Placed placed, vec2 centre, float half_size) {
-  vec3 at = vec3(centre, 1.0);
-  vec3 e = vec3(dot(placed.edge0, at), dot(placed.edge1, at), dot(placed.edge2, at));
-  vec3 reach = half_size * vec3(abs(placed.edge0.x) + abs(placed.edge0.y),
-                                abs(placed.edge1.x) + abs(placed.edge1.y),
-                                abs(placed.edge2.x) + abs(placed.edge2.y)) +
-               1e-6 * abs(vec3(placed.edge0.z, placed.edge1.z, placed.edge2.z));
-  return all(greaterThanEqual(e, -reach)) || (placed.edge_on && all(lessThanEqual(e, reach)));
+  vec3 slack = 1e-6 * abs(vec3(placed.edge0.z, placed.edge1.z, placed.edge2.z));
+  return edges_reach(placed.edge0, placed.edge1, placed.edge2, slack, placed.edge_on, centre,
+                     half_size);
 }
 
 // Counts the triangle in a node, or lists it with its depths there.
