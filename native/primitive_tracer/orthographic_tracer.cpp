@@ -24,9 +24,11 @@ uint32_t entry_limit(uint32_t triangles) {
 }
 
 int chosen_tiles(uint32_t triangles) {
-  const double side = std::sqrt(triangles / 24.0);
-  return std::clamp(int(std::bit_floor(unsigned(side))), 1, 512);
+  const unsigned side = std::bit_floor(unsigned(std::sqrt(triangles / 24.0)));
+  return std::clamp(int(side), triangles < 256 ? 1 : 32, 512);
 }
+
+int chosen_part(uint32_t triangles) { return std::clamp(int(triangles / 5000), 4, 40); }
 
 gl::ProgramSource pass(const char* name, const char* file, const char* define = nullptr) {
   gl::ProgramSource source;
@@ -70,7 +72,7 @@ OrthographicTracer::OrthographicTracer(const OrthographicSettings& settings, con
   };
   check(settings.tiles, 0, kMostTiles, "tiles a side");
   check(settings.divisions, 0, kMostDivisions, "divisions of a tile");
-  check(settings.triangles_a_part, 1, 1 << 20, "triangles a part");
+  check(settings.triangles_a_part, 0, 1 << 20, "triangles a part");
   check(settings.buckets_per_triangle, 1, int(shared::MOST_BUCKETS), "buckets per triangle");
 }
 
@@ -152,7 +154,9 @@ void OrthographicTracer::run_passes(uint32_t triangles, gl::ProgramCache& progra
     pools_.use(programs.get(density()));
     BuildPools::dispatch(triangles);
     pools_.use(programs.get(divide()));
-    glUniform2ui(3, uint32_t(settings_.triangles_a_part), uint32_t(settings_.divisions));
+    const int part =
+        settings_.triangles_a_part ? settings_.triangles_a_part : chosen_part(triangles);
+    glUniform2ui(3, uint32_t(part), uint32_t(settings_.divisions));
     BuildPools::dispatch(tiles);
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -11,14 +11,16 @@ namespace panoptes::primitive_tracer {
 struct OrthographicSettings {
   // Tiles along the longer side of the view, rounded up to a power of two, 1 .. 1024; 0 follows the
   // number of triangles: less than one tile for each two dozen of them, since most tiles of a scene
-  // are empty and crowded ones are divided.
+  // are empty and crowded ones are divided; but 32 where the ground around a small thing would leave
+  // it a tile or two.
   int tiles = 0;
   // Most times that a crowded tile is halved, 0 .. 4. Thrice (8x8 parts) on few tiles builds and
-  // traces faster than twice on four times as many.
-  int divisions = 3;
-  // Triangles that a part of a divided tile should hold at most. Fewer cost more to build than they
-  // save a frame's rays.
-  int triangles_a_part = 40;
+  // traces faster than twice on four times as many; once more is for crowds in a corner.
+  int divisions = 4;
+  // Triangles that a part of a divided tile should hold at most, from 1; 0 follows the number of
+  // triangles: 40 for 200 000, where fewer would cost more to build than they save a frame's rays,
+  // and less where there is little to build.
+  int triangles_a_part = 0;
   // Buckets over depth for each triangle of a node, up to 256. More save few tests and cost memory.
   int buckets_per_triangle = 2;
 };

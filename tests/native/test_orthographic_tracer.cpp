@@ -93,7 +93,7 @@ TEST(OrthographicTracer, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(OrthographicTracer({.tiles = -1}), Error);
   EXPECT_THROW(OrthographicTracer({.tiles = 1025}), Error);
   EXPECT_THROW(OrthographicTracer({.divisions = 5}), Error);
-  EXPECT_THROW(OrthographicTracer({.triangles_a_part = 0}), Error);
+  EXPECT_THROW(OrthographicTracer({.triangles_a_part = -1}), Error);
   EXPECT_THROW(OrthographicTracer({.buckets_per_triangle = 0}), Error);
 }
 
