@@ -4,6 +4,8 @@
 #include "engine/engine.h"
 #include "engine/snapshot.h"
 
+#include <fmt/ranges.h>
+
 #include <cstdio>
 #include <cstring>
 #include <fstream>

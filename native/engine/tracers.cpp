@@ -5,6 +5,8 @@
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 
+#include <fmt/ranges.h>
+
 namespace panoptes::engine {
 
 void StructureSettings::check() const {

@@ -1,5 +1,7 @@
 #include "python/convert.h"
 
+#include <fmt/ranges.h>
+
 #include <set>
 
 namespace panoptes::python {

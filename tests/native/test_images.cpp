@@ -3,6 +3,8 @@
 #include "gl/counters.h"
 #include "support.h"
 
+#include <fmt/ranges.h>
+
 #include <glm/gtc/packing.hpp>
 
 #include <array>

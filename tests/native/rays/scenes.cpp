@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 
+#include <fmt/ranges.h>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>

@@ -6,6 +6,8 @@
 #include "primitive_tracer/orthographic_tracer.h"
 #include "rays/brute_force.h"
 
+#include <fmt/ranges.h>
+
 namespace panoptes::test {
 
 namespace {
