@@ -6,9 +6,6 @@
 
 layout(std430, binding = 4) buffer Ranges { uint range_words[]; };  // as TileRange
 
-// Half a tile and a margin for rounding, in tiles.
-const float REACH = 0.52;
-
 struct Placed {
   // Planes through the centre and an edge: dot with (x, y, 1) is not negative inside. Rounding may
   // take at most `slack` from them, which near the centre is more than a tile's size.

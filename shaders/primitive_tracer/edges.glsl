@@ -1,5 +1,8 @@
 // Whether a triangle, by its edge functions, may reach into a square.
 
+// Half a cell and a margin for rounding, in cells: one for all passes, which must agree.
+const float REACH = 0.52;
+
 // The functions are not negative inside, dot(edge, (x, y, 1)); `slack` is how far rounding may put
 // each off. Of a triangle that is `edge_on`, thin as seen here, the orientation is not known.
 bool edges_reach(vec3 edge0, vec3 edge1, vec3 edge2, vec3 slack, bool edge_on, vec2 centre,

@@ -9,9 +9,6 @@ layout(binding = 1) uniform usamplerBuffer nodes;
 layout(std430, binding = 0) writeonly buffer NodeEntries { NodeEntry node_entries[]; };
 layout(std430, binding = 4) buffer Lists { NodeList lists[]; };
 
-// Half a cell and a margin for rounding, in cells.
-const float REACH = 0.52;
-
 struct Placed {
   vec3 edge0, edge1, edge2;  // not negative inside: dot with (x, y, 1)
   vec3 corner;               // the first vertex

@@ -1,11 +1,10 @@
 // Rasterises the queue of blocks of large triangles, one row of eight cells an invocation.
 #include "primitive_tracer/build.glsl"
 #include "tracing/triangles.glsl"
+#include "primitive_tracer/edges.glsl"
 #include "generated/views.glsl"
 
 layout(local_size_x = 64) in;
-
-const float CELL_REACH = 0.52;  // as in raster_triangles.comp
 
 void main() {
   uint row = invocation();
@@ -18,6 +17,6 @@ void main() {
   if (cell.y < cells.y || cell.y > cells.w) return;
   int last = min(cell.x + 7, cells.z);
   for (cell.x = max(cell.x, cells.x); cell.x <= last; ++cell.x)
-    if (overlaps(placed, vec2(cell) + 0.5, CELL_REACH))
+    if (overlaps(placed, vec2(cell) + 0.5, REACH))
       emit(block.primitive, block.view, placed, cell);
 }

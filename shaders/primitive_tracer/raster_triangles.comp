@@ -10,13 +10,13 @@
 //     void emit(uint primitive, uint view, Placed placed, ivec2 cell);
 #include "primitive_tracer/build.glsl"
 #include "tracing/triangles.glsl"
+#include "primitive_tracer/edges.glsl"
 #include "generated/views.glsl"
 
 layout(local_size_x = 64) in;
 
 const int MOST_CELLS = 64;       // of a triangle that is rasterised here
-const float CELL_REACH = 0.52;   // half a cell and a margin for rounding
-const float BLOCK_REACH = 4.1;
+const float BLOCK_REACH = 4.1;  // half a block and the same for it
 
 void main() {
   uint primitive = spread_invocation(16u);
@@ -30,7 +30,7 @@ void main() {
     if (size.x * size.y <= MOST_CELLS) {
       ivec2 cell = cells.xy;
       for (int i = size.x * size.y; i > 0; --i) {
-        if (overlaps(placed, vec2(cell) + 0.5, CELL_REACH)) emit(primitive, view, placed, cell);
+        if (overlaps(placed, vec2(cell) + 0.5, REACH)) emit(primitive, view, placed, cell);
         cell = cell.x < cells.z ? ivec2(cell.x + 1, cell.y) : ivec2(cells.x, cell.y + 1);
       }
     } else if (LISTED == 0) {  // they are in the queue from then on
