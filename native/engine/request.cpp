@@ -51,6 +51,7 @@ void RenderRequest::check() const {
     fail("there is no debug picture number {}: choose one of {}", int(debug_picture),
          fmt::join(ray_picture::kKindNames, ", "));
   structure.check();
+  paths.check();
 }
 
 std::string RenderStats::to_json() const {

@@ -4,6 +4,7 @@
 #include "engine/structure.h"
 #include "film/passes.h"
 #include "gpu_scene/view.h"
+#include "path_tracer/settings.h"
 #include "plan/effect.h"
 #include "ray_picture/kind.h"
 
@@ -14,8 +15,14 @@
 
 namespace panoptes::engine {
 
+enum class Method {
+  kRealtime,   // shadow maps and rasterised light
+  kPrimitive,  // path tracing over exact intersections
+};
+
 struct RenderRequest {
   gpu_scene::Camera camera;
+  Method method = Method::kRealtime;
   uint32_t first_sample = 0, last_sample = 1;  // half-open
   uint32_t seed = 0;
   film::PassSet passes;
@@ -32,6 +39,7 @@ struct RenderRequest {
   // Shows rays at work in place of the scene, in Combined; other passes stay 0.
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;
   StructureSettings structure;  // for rays
+  path_tracer::Settings paths;
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;

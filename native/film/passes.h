@@ -8,7 +8,9 @@
 namespace panoptes::film {
 
 enum class Pass {
-  kCombined, kDepth, kNormal, kDiffCol, kDiffDir, kGlossCol, kGlossDir, kEmit, kEnv, kCount
+  kCombined, kDepth, kPosition, kNormal,
+  kDiffCol, kDiffDir, kDiffInd, kGlossCol, kGlossDir, kGlossInd, kTransCol, kTransDir, kTransInd,
+  kEmit, kEnv, kAo, kSampleCount, kCount
 };
 constexpr int kPassCount = int(Pass::kCount);
 
@@ -23,13 +25,21 @@ struct PassInfo {
 constexpr std::array<PassInfo, kPassCount> kPasses{{
     {"Combined", 4, "FILM_COMBINED", Pass::kCombined, true},
     {"Depth", 1, "FILM_DEPTH", Pass::kDepth, false},
+    {"Position", 3, "FILM_POSITION", Pass::kPosition, false},
     {"Normal", 3, "FILM_NORMAL", Pass::kNormal, false},
     {"DiffCol", 3, "FILM_DIFFCOL", Pass::kDiffCol, false},
     {"DiffDir", 3, "FILM_DIFFDIR", Pass::kDiffCol, true},
+    {"DiffInd", 3, "FILM_DIFFIND", Pass::kDiffCol, true},
     {"GlossCol", 3, "FILM_GLOSSCOL", Pass::kGlossCol, false},
     {"GlossDir", 3, "FILM_GLOSSDIR", Pass::kGlossCol, true},
+    {"GlossInd", 3, "FILM_GLOSSIND", Pass::kGlossCol, true},
+    {"TransCol", 3, "FILM_TRANSCOL", Pass::kTransCol, false},
+    {"TransDir", 3, "FILM_TRANSDIR", Pass::kTransCol, true},
+    {"TransInd", 3, "FILM_TRANSIND", Pass::kTransCol, true},
     {"Emit", 3, "FILM_EMIT", Pass::kEmit, true},
     {"Env", 3, "FILM_ENV", Pass::kEnv, true},
+    {"AO", 3, "FILM_AO", Pass::kAo, false},
+    {"Debug Sample Count", 1, "FILM_SAMPLE_COUNT", Pass::kSampleCount, false},
 }};
 
 using PassSet = std::bitset<kPassCount>;

@@ -7,11 +7,22 @@
 
 namespace panoptes::gpu_scene {
 
+// A thin lens that gathers light around the camera's place: what lies nearer or farther than the
+// focus is blurred. Sharp everywhere while the radius is 0.
+struct Lens {
+  double radius = 0;          // m
+  double focus_distance = 1;  // m, along the camera's axis
+  int blades = 0;             // corners of the aperture; below 3: a disk
+  double rotation = 0;        // rad, of the aperture, counterclockwise as the camera sees it
+  double ratio = 1;           // of the aperture's width to its height, of an anamorphic lens
+};
+
 // A camera as Blender gives it. Throws nothing; validate with check().
 struct Camera {
   glm::dmat4 world_to_camera{1.0};  // column-major
   glm::dmat4 projection{1.0};       // OpenGL's, perspective or orthographic
   int width = 0, height = 0;        // pixels
+  Lens lens;                        // for rays only: what is rasterised is sharp
 
   // Throws Error when the size is not positive or a matrix cannot be used.
   void check(int max_size) const;

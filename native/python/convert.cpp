@@ -101,6 +101,36 @@ scene::Light light(const py::dict& dict) {
   return light;
 }
 
+namespace {
+
+gpu_scene::Lens lens(const py::dict& dict) {
+  gpu_scene::Lens lens;
+  lens.radius = get(dict, "radius", lens.radius);
+  lens.focus_distance = get(dict, "focus_distance", lens.focus_distance);
+  lens.blades = get(dict, "blades", lens.blades);
+  lens.rotation = get(dict, "rotation", lens.rotation);
+  lens.ratio = get(dict, "ratio", lens.ratio);
+  return lens;
+}
+
+path_tracer::Settings path_settings(const py::dict& dict) {
+  path_tracer::Settings s;
+  s.bounces.total = get(dict, "bounces", s.bounces.total);
+  s.bounces.diffuse = get(dict, "diffuse_bounces", s.bounces.diffuse);
+  s.bounces.glossy = get(dict, "glossy_bounces", s.bounces.glossy);
+  s.bounces.transmission = get(dict, "transmission_bounces", s.bounces.transmission);
+  s.bounces.transparent = get(dict, "transparent_bounces", s.bounces.transparent);
+  s.clamp_direct = get(dict, "clamp_direct", s.clamp_direct);
+  s.clamp_indirect = get(dict, "clamp_indirect", s.clamp_indirect);
+  s.filter_glossy = get(dict, "filter_glossy", s.filter_glossy);
+  s.shadow_maps = get(dict, "shadow_maps", s.shadow_maps);
+  s.raster_primary = get(dict, "raster_primary", s.raster_primary);
+  s.ao_distance = get(dict, "ao_distance", s.ao_distance);
+  return s;
+}
+
+}  // namespace
+
 engine::RenderRequest request(const py::dict& dict) {
   engine::RenderRequest r;
   r.camera.width = need<int>(dict, "width");
@@ -121,18 +151,22 @@ engine::RenderRequest request(const py::dict& dict) {
     r.passes.set(size_t(pass));
   }
   const auto method = get<std::string>(dict, "method", "realtime");
-  if (method != "realtime")
-    fail("method '{}' is not part of this version: choose 'realtime'", method);
+  if (method != "realtime" && method != "primitive")
+    fail("method '{}' is not part of this version: choose 'realtime' or 'primitive'", method);
+  r.method = method == "primitive" ? engine::Method::kPrimitive : engine::Method::kRealtime;
+  r.camera.lens = lens(get(dict, "lens", py::dict()));
   r.filter_width = get(dict, "filter_width", r.filter_width);
   r.exposure = get(dict, "exposure", r.exposure);
   r.force_all_effects = get(dict, "force_all_effects", false);
   r.live = get(dict, "live", false);
   const py::dict settings = get(dict, "settings", py::dict());
-  // Part of the add-on's stable settings; direct light has no bounces to count.
-  static const std::set<std::string> known{"shadow_resolution", "soft_shadows",
-                                           "filter_penumbrae", "time_budget",
-                                           "noise_threshold", "bounces", "film_transparent",
-                                           "debug_picture", "structure", "tiles", "buckets"};
+  static const std::set<std::string> known{
+      "shadow_resolution",    "soft_shadows",        "filter_penumbrae", "time_budget",
+      "noise_threshold",      "film_transparent",    "debug_picture",    "structure",
+      "tiles",                "buckets",             "bounces",          "diffuse_bounces",
+      "glossy_bounces",       "transmission_bounces", "transparent_bounces", "clamp_direct",
+      "clamp_indirect",       "filter_glossy",       "shadow_maps",      "raster_primary",
+      "ao_distance"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -154,6 +188,7 @@ engine::RenderRequest request(const py::dict& dict) {
          fmt::join(engine::kStructureNames, ", "));
   r.structure.tiles = get(settings, "tiles", 0);
   r.structure.buckets = get(settings, "buckets", 0);
+  r.paths = path_settings(settings);
   return r;
 }
 

@@ -62,8 +62,10 @@ void set_material(Engine& engine, Id id, const std::string& name, const std::str
   const auto flag = [&](const char* key, bool otherwise) {
     return facts.contains(key) ? facts[key].cast<bool>() : otherwise;
   };
-  material.facts = {flag("alpha", false), flag("emission", false), flag("normal_map", false),
-                    flag("glossy", true), flag("transmission", false), flag("layers", false)};
+  material.facts = {flag("alpha", false),      flag("emission", false),
+                    flag("emission_varies", true), flag("normal_map", false),
+                    flag("glossy", true),      flag("transmission", false),
+                    flag("layers", false)};
   if (facts.contains("attributes"))
     material.attributes = facts["attributes"].cast<std::vector<std::string>>();
   edit(engine, [&](Scene& scene) { scene.set_material(id, std::move(material)); });

@@ -103,6 +103,7 @@ struct TextureUse {
 struct MaterialFacts {
   bool alpha = false;
   bool emission = false;
+  bool emission_varies = true;  // over the surface or by its side; false: one radiance everywhere
   bool normal_map = false;
   bool glossy = true;
   bool transmission = false;
