@@ -18,9 +18,14 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     append(film::decide(settings.passes));
     return all;
   }
-  append(rasterize::decide(facts, {settings.samples, settings.soft_shadows,
-                                    settings.filter_penumbrae}));
-  append(realtime::decide(facts));
+  if (settings.path_tracing) {
+    append(rasterize::decide_surfaces(facts));
+    append(path_tracer::decide(facts, settings.paths));
+  } else {
+    append(rasterize::decide(facts, {settings.samples, settings.soft_shadows,
+                                      settings.filter_penumbrae}));
+    append(realtime::decide(facts));
+  }
   append(film::decide(settings.passes));
   if (settings.force_all_effects)
     for (Effect& effect : all)

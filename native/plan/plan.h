@@ -2,6 +2,7 @@
 #pragma once
 
 #include "film/passes.h"
+#include "path_tracer/decide.h"
 #include "plan/effect.h"
 #include "ray_picture/kind.h"
 #include "scene/scene.h"
@@ -15,6 +16,8 @@ struct PlanSettings {
   bool force_all_effects = false;  // runs what the scene cannot show too; the picture stays the same
   film::PassSet passes;
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
+  bool path_tracing = false;       // Primitive tracing, not Real-time
+  path_tracer::DecideSettings paths;
 };
 
 Effects make_plan(const scene::Facts& facts, const PlanSettings& settings);

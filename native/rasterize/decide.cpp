@@ -12,7 +12,7 @@ plan::Effect when(const char* name, bool runs, const char* yes, const char* no) 
 
 }  // namespace
 
-plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) {
+plan::Effects decide_surfaces(const scene::Facts& facts) {
   plan::Effects effects;
   effects.push_back({"surfaces", facts.triangles > 0,
                      facts.triangles > 0 ? fmt::format("{} triangles in {} objects",
@@ -30,6 +30,11 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                          "no material refracts light"));
   effects.push_back(when("layers", facts.layers, "some material has a coat or a sheen",
                          "no material has a coat or a sheen"));
+  return effects;
+}
+
+plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) {
+  plan::Effects effects = decide_surfaces(facts);
   const char* kinds[4] = {"point", "sun", "spot", "area"};
   for (int i = 0; i < 4; ++i) {
     const int lamps = facts.lamps[i], casting = facts.shadow_lamps[i];

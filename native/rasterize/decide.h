@@ -11,6 +11,8 @@ struct DecideSettings {
   bool filter_penumbrae = false;  // by blocker distance, instead of a point of the lamp a sample
 };
 
+// What surfaces have that must be stored of them, however they are found.
+plan::Effects decide_surfaces(const scene::Facts& facts);
 // What the camera's G-buffer and the shadow maps do for a scene with these facts.
 plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings);
 

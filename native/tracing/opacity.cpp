@@ -13,8 +13,7 @@ namespace panoptes::tracing {
 namespace {
 
 // Bindings of shaders/tracing/opacity_*.comp and open_rays.comp.
-constexpr unsigned kHits = 0, kRays = 1, kCounter = 2, kListIn = 3, kListOut = 4, kBins = 5,
-                   kTransmittance = 6;
+constexpr unsigned kHits = 0, kRays = 1, kCounter = 2, kListIn = 3, kListOut = 4, kPassed = 6;
 
 constexpr GLbitfield kBarriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                                  GL_BUFFER_UPDATE_BARRIER_BIT;
@@ -49,19 +48,13 @@ gl::ProgramSource open_rays_program(bool listed, bool transmittance) {
   return source;
 }
 
-gl::ProgramSource opacity_sort_program(bool listed, bool placed) {
-  gl::ProgramSource source;
-  source.name = "rays by material";
-  source.stages = {{GL_COMPUTE_SHADER, "tracing/opacity_sort.comp"}};
-  source.defines = {fmt::format("LISTED {}", int(listed)), fmt::format("PLACED {}", int(placed))};
-  return source;
-}
-
-gl::ProgramSource opacity_program(const gpu_scene::GpuMaterial& material, bool transmittance) {
+gl::ProgramSource opacity_program(const gpu_scene::GpuMaterial& material,
+                                  const OpacityOptions& options) {
   gl::ProgramSource source;
   source.name = fmt::format("opacity of material '{}'", material.name);
   source.stages = {{GL_COMPUTE_SHADER, "tracing/opacity_decide.comp"}};
-  source.defines = {fmt::format("TRANSMITTANCE {}", int(transmittance))};
+  source.defines = {fmt::format("TRANSMITTANCE {}", int(options.transmittance)),
+                    fmt::format("WEIGHTED {}", int(options.weighted))};
   gpu_scene::GpuScene::add_material(material, source);
   return source;
 }
@@ -95,9 +88,10 @@ void OpacityWaves::trace(const Tracer& tracer, const TriangleList& triangles,
   view.world_origin = glm::vec4(triangles.origin(), 0);
   const Surfaces surfaces = frame.any_hit ? Surfaces::kAlpha : Surfaces::kAll;
   while (count > 0) {
-    const std::vector<uint32_t> bins = sort(frame, count, listed);
+    bins_.sort({*batch.hits, count, listed, true}, uint32_t(scene.materials().size()), triangles,
+               programs);
     view_block_.set(view);
-    count = decide(frame, bins);
+    count = decide(frame);
     listed = &list_;
     run_waves(frame, surfaces, count, listed);
     rounds_ += count > 0;
@@ -124,49 +118,24 @@ uint32_t OpacityWaves::list_open(const Frame& frame) {
   if (batch.listed) bind(kListIn, *batch.listed);
   bind(kCounter, counter_);
   bind(kListOut, list_);
-  if (frame.transmittance) bind(kTransmittance, *frame.batch.transmittance);
+  if (frame.transmittance) bind(kPassed, *frame.batch.passed);
   glUniform1ui(1, batch.count);
   gl::dispatch(batch.count, kBarriers);
   return read_word(counter_);
 }
 
-std::vector<uint32_t> OpacityWaves::sort(const Frame& frame, uint32_t count,
-                                         const gl::Buffer* listed) {
-  const size_t materials = frame.scene.materials().size();
-  bins_.reserve(int64_t(materials) * 4);
-  sorted_.reserve(int64_t(count) * 4);
-  const auto pass = [&](bool placed) {
-    frame.programs.get(opacity_sort_program(listed != nullptr, placed)).use();
-    frame.triangles.texture().bind(gpu_scene::kFreeUnit);
-    bind(kHits, *frame.batch.hits);
-    if (listed) bind(kListIn, *listed);
-    if (placed) bind(kListOut, sorted_);
-    bind(kBins, bins_);
-    glUniform1ui(1, count);
-    gl::dispatch(count, kBarriers);
-  };
-  bins_.clear();
-  pass(false);
-  std::vector<uint32_t> counts(materials);
-  bins_.read(0, int64_t(materials) * 4, counts.data());
-  std::vector<uint32_t> firsts(materials);
-  std::exclusive_scan(counts.begin(), counts.end(), firsts.begin(), 0u);
-  if (materials == 0 || firsts.back() + counts.back() == 0) return counts;
-  bins_.write(0, int64_t(materials) * 4, firsts.data());
-  pass(true);
-  return counts;
-}
-
-uint32_t OpacityWaves::decide(const Frame& frame, const std::vector<uint32_t>& bins) {
+uint32_t OpacityWaves::decide(const Frame& frame) {
+  const std::vector<uint32_t>& bins = bins_.counts();
   const uint32_t total = std::accumulate(bins.begin(), bins.end(), 0u);
   if (total == 0) return 0;
   list_.reserve(int64_t(total) * 4);
   counter_.clear();
+  const OpacityOptions options{frame.transmittance, frame.batch.passed != nullptr};
   uint32_t first = 0;
   for (size_t m = 0; m < bins.size(); first += bins[m++]) {
     if (bins[m] == 0) continue;
     const gpu_scene::GpuMaterial& material = frame.scene.materials()[m];
-    frame.programs.get(opacity_program(material, frame.transmittance)).use();
+    frame.programs.get(opacity_program(material, options)).use();
     frame.scene.bind_geometry();
     frame.scene.bind_shading(material);
     frame.triangles.texture().bind(gpu_scene::kFreeUnit);
@@ -175,8 +144,10 @@ uint32_t OpacityWaves::decide(const Frame& frame, const std::vector<uint32_t>& b
     bind(kCounter, counter_);
     bind(kListIn, sorted_);
     bind(kListOut, list_);
-    if (frame.transmittance) bind(kTransmittance, *frame.batch.transmittance);
+    if (options.weighted) bind(kPassed, *frame.batch.passed);
     glUniform2ui(1, first, bins[m]);
+    if (options.weighted) glUniform1f(2, float(frame.batch.most_layers));
+    if (!options.transmittance) glUniform1f(3, frame.batch.threshold);
     gl::dispatch(bins[m], kBarriers);
   }
   return read_word(counter_);

@@ -13,6 +13,7 @@
 
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/view_block.h"
+#include "tracing/hit_bins.h"
 #include "tracing/ray_waves.h"
 
 namespace panoptes::tracing {
@@ -25,9 +26,15 @@ enum class OpacityMode {
 
 // A batch of rays, which are changed: those that pass a surface begin there.
 struct OpacityBatch : RayBatch {
-  // kTransmittance: vec4, a ray; rgb is written, 0 where an opaque surface is met. Rays that nothing
-  // stops have no hit, whatever they have lost on their way.
-  const gl::Buffer* transmittance = nullptr;
+  // vec4, a ray; with kTransmittance always, with kClosest if wanted.
+  //   rgb: kTransmittance: written, what passes, 0 where an opaque surface is met. Rays that nothing
+  //     stops have no hit, whatever they have lost on their way. kClosest: multiplied by the colour
+  //     of each surface that is passed, over the luminance that it is passed by, so that
+  //     many rays together have the colours right.
+  //   a: the surfaces passed, counted on.
+  const gl::Buffer* passed = nullptr;
+  uint32_t most_layers = ~0u;  // a ray that has passed so many, by `passed`, stops at the next
+  float threshold = -1;        // what has a lower alpha is passed; below 0: by chance
 };
 
 class OpacityWaves {
@@ -45,23 +52,25 @@ class OpacityWaves {
   struct Frame;  // what stays the same during a trace()
   void run_waves(const Frame& frame, Surfaces surfaces, uint32_t count, const gl::Buffer* listed);
   uint32_t list_open(const Frame& frame);
-  // Sorts the rays that met a surface with an alpha; the bins' sizes, by material.
-  std::vector<uint32_t> sort(const Frame& frame, uint32_t count, const gl::Buffer* listed);
-  // Evaluates the sorted rays' surfaces and lists those that pass in list_; their number.
-  uint32_t decide(const Frame& frame, const std::vector<uint32_t>& bins);
+  // Evaluates the surfaces of the rays in bins_ and lists those that pass in list_; their number.
+  uint32_t decide(const Frame& frame);
 
   RayWaves waves_;
   gpu_scene::ViewBlock view_block_;
-  gl::Buffer bins_, counter_;
-  gl::Buffer sorted_;  // numbers of rays, by material
-  gl::Buffer list_;    // of those that go on
+  HitBins bins_;     // of rays that met a surface with an alpha
+  gl::Buffer counter_;
+  gl::Buffer list_;  // numbers of the rays that go on
   int rounds_ = 0;
   int64_t rays_ = 0;
 };
 
-// The programs, for the validation of shaders too. `transmittance`: as in the mode.
+// The programs, for the validation of shaders too.
 gl::ProgramSource open_rays_program(bool listed, bool transmittance);
-gl::ProgramSource opacity_sort_program(bool listed, bool placed);
-gl::ProgramSource opacity_program(const gpu_scene::GpuMaterial& material, bool transmittance);
+struct OpacityOptions {
+  bool transmittance = false;  // as in the mode
+  bool weighted = false;       // `passed` is kept: with transmittance always
+};
+gl::ProgramSource opacity_program(const gpu_scene::GpuMaterial& material,
+                                  const OpacityOptions& options);
 
 }  // namespace panoptes::tracing

@@ -12,8 +12,12 @@ layout(std430, binding = 1) buffer Rays { TracedRay rays[]; };
 layout(std430, binding = 2) buffer Counter { uint passing_count; };
 layout(std430, binding = 3) readonly buffer Sorted { uint by_material[]; };
 layout(std430, binding = 4) writeonly buffer Passing { uint passing[]; };
-#if TRANSMITTANCE
-layout(std430, binding = 6) buffer Passed { vec4 passed[]; };
+#if WEIGHTED
+layout(std430, binding = 6) buffer Passed { vec4 passed[]; };  // colour, layers
+layout(location = 2) uniform float most_layers;
+#endif
+#if !TRANSMITTANCE
+layout(location = 3) uniform float threshold;  // below 0: by chance
 #endif
 layout(location = 1) uniform uvec2 range;  // of by_material: first, count
 
@@ -33,14 +37,22 @@ void main() {
   Surface surface = empty_surface();
   evaluate_material(fetch_hit(ray, instance, triangle), surface);
 
+  vec3 transparency = clamp(finite(surface.transparency), 0.0, 1.0);
 #if TRANSMITTANCE
-  vec3 left = passed[index].rgb * clamp(finite(surface.transparency), 0.0, 1.0);
-  passed[index] = vec4(left, 0.0);
+  vec4 before = passed[index];
+  vec3 left = before.a < most_layers ? before.rgb * transparency : vec3(0.0);
+  passed[index] = vec4(left, before.a + 1.0);
   bool passes = any(greaterThan(left, vec3(0.0)));
 #else
   // As the rasteriser does it, but with a number for each ray and primitive.
-  float threshold = unit_float(hash(primitive + hash(traced.seed)));
-  bool passes = 1.0 - luminance(surface.transparency) <= threshold;
+  float opaque_from = threshold < 0.0 ? unit_float(hash(primitive + hash(traced.seed))) : threshold;
+  float share = luminance(transparency);
+  bool passes = 1.0 - share <= opaque_from && share > 0.0;
+#if WEIGHTED
+  vec4 before = passed[index];
+  passes = passes && before.a < most_layers;
+  if (passes) passed[index] = vec4(before.rgb * transparency / share, before.a + 1.0);
+#endif
 #endif
   if (!passes) return;
   rays[index].t_min = hits[index].t;

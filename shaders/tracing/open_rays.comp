@@ -11,7 +11,7 @@ layout(std430, binding = 3) readonly buffer Listed { uint listed[]; };
 #endif
 layout(std430, binding = 4) writeonly buffer Open { uint open_rays[]; };
 #if TRANSMITTANCE
-layout(std430, binding = 6) writeonly buffer Passed { vec4 passed[]; };
+layout(std430, binding = 6) buffer Passed { vec4 passed[]; };
 #endif
 layout(location = 1) uniform uint count;
 
@@ -25,7 +25,7 @@ void main() {
 #endif
   bool open = hits[ray].primitive == NO_PRIMITIVE;
 #if TRANSMITTANCE
-  passed[ray] = vec4(open ? 1.0 : 0.0);
+  passed[ray].rgb = vec3(open ? 1.0 : 0.0);
 #endif
   if (open) open_rays[atomicAdd(open_count, 1u)] = ray;
 }

@@ -1,0 +1,421 @@
+#include "path_tracer/path_tracer.h"
+
+#include "base/cancelled.h"
+#include "film/sampling.h"
+#include "gl/dispatch.h"
+#include "gpu_scene/units.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace panoptes::path_tracer {
+
+namespace {
+
+// Paths at a time: enough to keep a device busy, few enough for its memory (about 500 bytes each).
+constexpr uint32_t kBatch = 1 << 18;
+
+// Steps of the table by which the pixel filter is sampled.
+constexpr int kFilterSteps = 4096;
+
+// Texture units of path_tracer/*; materials have those below and above.
+constexpr int kSumsUnit = 4, kRaysUnit = 5, kHitsUnit = 6, kStatesUnit = 7, kRecordsUnit = 8,
+              kPassedUnit = 9, kFilterUnit = 4;
+
+constexpr GLbitfield kBarriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                                 GL_BUFFER_UPDATE_BARRIER_BIT;
+
+void bind(unsigned binding, const gl::Buffer& buffer) {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id());
+}
+
+// A buffer of at least so many bytes and its texels, both made anew when it grows.
+void reserve(gl::Buffer& buffer, gl::Texture& texels, GLenum format, int64_t bytes) {
+  if (!buffer.reserve(bytes) && texels) return;
+  texels = gl::Texture(format, buffer);
+}
+
+void bind_texels(const gl::Texture& texture, int unit) {
+  texture.bind(unit);
+  glBindSampler(GLuint(unit), 0);  // one of a material's images may still sit there
+}
+
+}  // namespace
+
+void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
+                       const FrameSettings& settings, const scene::Scene& scene,
+                       gpu_scene::GpuScene& gpu, const tracing::TriangleList& triangles,
+                       const film::PassSet& passes) {
+  camera_ = camera;
+  settings_ = settings;
+  rays_ = 0;
+  list_origin_ = triangles.origin();
+  const Settings& paths = settings.paths;
+  {
+    gl::PassScope scope(timer_, "lights");
+    lights_.update(scene, gpu, triangles, programs_, timer_);
+  }
+  alpha_ = runs(plan, "alpha");
+  options_ = {};
+  options_.surfaces = rasterize::GBufferOptions::of(plan);
+  options_.add_passes(passes);
+  if (lights_.any()) {
+    gl::ProgramSource source;
+    lights_.add_defines(source);
+    options_.light_defines = source.defines;
+  }
+  options_.clamp = paths.clamp_direct > 0 || paths.clamp_indirect > 0;
+  options_.filter_glossy = paths.filter_glossy > 0 && options_.surfaces.glossy;
+  options_.lens = runs(plan, "depth_of_field");
+  options_.alpha = alpha_;
+  options_.shines = options_.surfaces.emission || gpu.world() || lights_.any();
+  options_.deferred = lights_.world_sampled() || lights_.emitters_vary();
+  options_.transparent_film = settings.transparent_film;
+  depth_passes_ = passes[size_t(film::Pass::kDepth)] ||
+                  passes[size_t(film::Pass::kPosition)];
+
+  gpu.check_programs(
+      [&](const gpu_scene::GpuMaterial& material) {
+        programs_.get(fetch_program(material, options_));
+      },
+      [&](const gpu_scene::GpuShading& world) { programs_.get(miss_program(&world, options_)); });
+
+  const scene::Bounds& bounds = triangles.bounds();
+  const glm::vec3 extent = bounds.empty() ? glm::vec3(1) : bounds.high - bounds.low;
+  const glm::dmat4 world = glm::inverse(camera.world_to_camera);
+  const shared::View view = gpu_scene::camera_view(camera, {0, 0});
+  const gpu_scene::Lens& lens = camera.lens;
+  const glm::dvec3 right = glm::normalize(glm::dvec3(world[0])),
+                   up = glm::normalize(glm::dvec3(world[1]));
+  const double c = std::cos(lens.rotation), s = std::sin(lens.rotation);
+  const auto axis = [&](double x, double y, double w) {
+    return glm::vec4(glm::vec3(lens.radius * (x / std::max(lens.ratio, 1e-6) * right + y * up)),
+                     float(w));
+  };
+  frame_.camera = glm::vec4(glm::vec3(glm::dvec3(world[3]) - list_origin_),
+                            4 * glm::length(extent));
+  frame_.lens_x = axis(c, s, std::max(lens.focus_distance, 1e-6));
+  frame_.lens_y = axis(-s, c, lens.blades);
+  const glm::vec2 depths(gpu_scene::clip_depths(camera));
+  frame_.clip = {depths.x, depths.y, settings.filter_width, view.filtering.y};
+  frame_.clamps = {paths.clamp_direct, paths.clamp_indirect,
+                   paths.filter_glossy > 0 ? 1 / paths.filter_glossy : 0.0f, paths.ao_distance};
+  frame_.limits = {paths.bounces.total, paths.bounces.diffuse, paths.bounces.glossy,
+                   paths.bounces.transmission};
+  frame_.size = {camera.width, paths.bounces.transparent, 0, 0};
+
+  if (!filter_offsets_) {
+    std::vector<float> offsets(kFilterSteps + 1);
+    for (int i = 0; i <= kFilterSteps; ++i)
+      offsets[size_t(i)] = film::blackman_harris_offset(float(i) / kFilterSteps, 1.0f);
+    filter_buffer_ = gl::Buffer(std::span<const float>(offsets));
+    filter_offsets_ = gl::Texture(GL_R32F, filter_buffer_);
+  }
+}
+
+int64_t PathTracer::record_bytes() const {
+  // As path_tracer/surface_record.glsl and lobes.glsl have them.
+  return 16 * (2 + options_.surfaces.emission + lobes_texels(options_.surfaces));
+}
+
+void PathTracer::reserve(uint32_t paths) {
+  const int64_t n = paths;
+  path_tracer::reserve(rays_buffer_, rays_texels_, GL_RGBA32F, n * int64_t(sizeof(shared::TracedRay)));
+  path_tracer::reserve(hits_, hits_texels_, GL_RGBA32UI, n * int64_t(sizeof(shared::TracedHit)));
+  path_tracer::reserve(states_, states_texels_, GL_RGBA32UI, n * (options_.light_passes ? 64 : 32));
+  path_tracer::reserve(passed_, passed_texels_, GL_RGBA32F, n * 16);
+  path_tracer::reserve(records_, records_texels_, GL_RGBA32UI, n * record_bytes());
+  path_tracer::reserve(sums_, sums_texels_, GL_RGBA32F, n * 16 * int64_t(options_.passes.size()));
+  going_.reserve(n * 4);
+  counters_.reserve(8);
+  if (!lights_.any() && !options_.occlusion) return;
+  shadow_rays_.reserve(n * int64_t(sizeof(shared::TracedRay)));
+  shadow_hits_.reserve(n * int64_t(sizeof(shared::TracedHit)));
+  shadow_passed_.reserve(n * 16);
+  arrivals_.reserve(n * int64_t(sizeof(shared::Arrival)));
+  shadow_list_.reserve(n * 4);
+  if (options_.light_passes) shares_.reserve(n * 32);
+  if (options_.deferred) deferred_.reserve(n * 4);
+}
+
+void PathTracer::release() {
+  for (gl::Texture* texels : {&rays_texels_, &hits_texels_, &states_texels_, &passed_texels_,
+                              &records_texels_, &sums_texels_})
+    *texels = gl::Texture();
+  for (gl::Buffer* buffer : {&rays_buffer_, &hits_, &states_, &passed_, &records_, &sums_,
+                             &shadow_rays_, &shadow_hits_, &shadow_passed_, &arrivals_, &shares_,
+                             &going_, &shadow_list_, &deferred_, &counters_})
+    *buffer = gl::Buffer();
+  lights_ = Lights();
+}
+
+void PathTracer::set_frame(uint32_t index, uint32_t first_pixel, uint32_t count) {
+  frame_.range = {index, settings_.seed, first_pixel, count};
+  frame_block_.reserve(sizeof frame_);
+  frame_block_.write(0, sizeof frame_, &frame_);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, frame_block_.id());
+}
+
+void PathTracer::render_sample(uint32_t index, bool first, const Surroundings& around,
+                               film::Film& film, const std::atomic<bool>& cancelled) {
+  const auto pixels = uint32_t(film.active_count());
+  reserve(std::min(pixels, kBatch));
+  for (uint32_t start = 0; start < pixels; start += kBatch) {
+    const uint32_t count = std::min(pixels - start, kBatch);
+    set_frame(index, start, count);
+    if (first && depth_passes_) write_depth(count, around, film);
+    begin_paths(count, false, film);
+    trace_paths(count, around, cancelled);
+    resolve(count, film);
+  }
+}
+
+void PathTracer::write_depth(uint32_t count, const Surroundings& around, film::Film& film) {
+  // Where a surface is half transparent or more, depth is that of what lies behind: as Blender's.
+  constexpr float kCutAlpha = 0.5f;
+  begin_paths(count, true, film);
+  trace(count, nullptr, kCutAlpha, around);
+  gl::PassScope scope(timer_, "pass_depth");
+  camera_block_.set(gpu_scene::camera_view(camera_, {0, 0}));
+  programs_.get(depth_program(film)).use();
+  film.bind();
+  bind_texels(rays_texels_, kRaysUnit);
+  bind_texels(hits_texels_, kHitsUnit);
+  gl::dispatch(count, kBarriers | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void PathTracer::begin_paths(uint32_t count, bool centre, const film::Film& film) {
+  gl::PassScope scope(timer_, "camera_rays");
+  camera_block_.set(gpu_scene::camera_view(camera_, {0, 0}));
+  const gl::Buffer* listed = film.all_active() ? nullptr : &film.active_pixels();
+  programs_.get(begin_paths_program(options_, listed != nullptr, centre)).use();
+  if (!centre) bind_texels(filter_offsets_, kFilterUnit);
+  bind(0, rays_buffer_);
+  bind(1, states_);
+  bind(2, passed_);
+  bind(3, sums_);
+  if (listed) bind(4, *listed);
+  gl::dispatch(count, kBarriers);
+}
+
+void PathTracer::trace(uint32_t count, const gl::Buffer* listed, float threshold,
+                       const Surroundings& around) {
+  gl::PassScope scope(timer_, "path_rays");
+  tracing::OpacityBatch batch;
+  batch.rays = &rays_buffer_;
+  batch.hits = &hits_;
+  batch.count = count;
+  batch.listed = listed;
+  batch.passed = &passed_;
+  batch.most_layers = uint32_t(settings_.paths.bounces.transparent) + 1;
+  batch.threshold = threshold;
+  opacity_.trace(around.tracer, around.triangles, around.scene, batch,
+                 tracing::OpacityMode::kClosest, false, programs_);
+  rays_ += opacity_.rays();
+}
+
+void PathTracer::trace_paths(uint32_t count, const Surroundings& around,
+                             const std::atomic<bool>& cancelled) {
+  const gl::Buffer* listed = nullptr;
+  const auto materials = uint32_t(around.scene.materials().size());
+  for (uint32_t depth = 0; count > 0; ++depth) {
+    trace(count, listed, -1, around);
+    stop_if(cancelled);
+    {
+      gl::PassScope scope(timer_, "path_hits_sorted");
+      bins_.sort({hits_, count, listed, false}, materials, around.triangles, programs_);
+    }
+    const uint32_t missed = bins_.counts().back(), met = count - missed;
+    fetch(around);
+    miss(met, missed, around);
+    if (depth == 0 && options_.occlusion) ambient_occlusion(met, around);
+    const auto [going, shadows] = shade(met, depth);
+    stop_if(cancelled);
+    {
+      gl::PassScope scope(timer_, "shadow_rays");
+      trace_shadows(shadows, around);
+    }
+    arrive(shadows, around);
+    stop_if(cancelled);
+    count = going;
+    listed = &going_;
+  }
+}
+
+void PathTracer::fetch(const Surroundings& around) {
+  gl::PassScope scope(timer_, "path_surfaces");
+  shared::View view{};
+  view.world_origin = glm::vec4(glm::vec3(list_origin_), 0);
+  view.filtering = {-64.0f, 0, camera_.perspective() ? 1.0f : 0.0f, 0};
+  list_block_.set(view);
+  const std::vector<uint32_t>& counts = bins_.counts();
+  uint32_t first = 0;
+  for (size_t m = 0; m + 1 < counts.size(); first += counts[m++]) {
+    if (counts[m] == 0) continue;
+    const gpu_scene::GpuMaterial& material = around.scene.materials()[m];
+    programs_.get(fetch_program(material, options_)).use();
+    around.scene.bind_geometry();
+    around.scene.bind_shading(material);
+    around.triangles.texture().bind(gpu_scene::kFreeUnit);
+    bind(0, rays_buffer_);
+    bind(1, hits_);
+    bind(2, states_);
+    bind(3, bins_.sorted());
+    bind(4, records_);
+    glUniform2ui(1, first, counts[m]);
+    gl::dispatch(counts[m], kBarriers);
+  }
+}
+
+void PathTracer::miss(uint32_t first, uint32_t count, const Surroundings& around) {
+  const auto& world = around.scene.world();
+  if (count == 0 || !(world || lights_.any() || options_.transparent_film)) return;
+  gl::PassScope scope(timer_, "path_world");
+  programs_.get(miss_program(world ? &*world : nullptr, options_)).use();
+  if (world) around.scene.bind_shading(*world);
+  if (lights_.any()) lights_.bind();
+  bind_texels(sums_texels_, kSumsUnit);
+  bind_texels(rays_texels_, kRaysUnit);
+  bind_texels(states_texels_, kStatesUnit);
+  bind(0, bins_.sorted());
+  bind(1, passed_);
+  bind(6, sums_);
+  glUniform2ui(1, first, count);
+  gl::dispatch(count, kBarriers);
+}
+
+std::pair<uint32_t, uint32_t> PathTracer::shade(uint32_t count, uint32_t depth) {
+  if (count == 0) return {0, 0};
+  gl::PassScope scope(timer_, "path_shading");
+  counters_.clear();
+  programs_.get(shade_program(options_)).use();
+  if (lights_.any()) lights_.bind();
+  bind_texels(sums_texels_, kSumsUnit);
+  bind_texels(rays_texels_, kRaysUnit);
+  bind_texels(hits_texels_, kHitsUnit);
+  bind_texels(states_texels_, kStatesUnit);
+  bind_texels(records_texels_, kRecordsUnit);
+  bind_texels(passed_texels_, kPassedUnit);
+  bind(0, rays_buffer_);
+  bind(1, states_);
+  bind(2, counters_);
+  bind(3, going_);
+  bind(4, passed_);
+  bind(6, sums_);
+  if (lights_.any()) {
+    bind(5, shadow_rays_);
+    bind(7, shadow_list_);
+    bind(8, arrivals_);
+    bind(9, shadow_passed_);
+    if (options_.light_passes) bind(10, shares_);
+  }
+  glUniform1ui(0, count);
+  glUniform1ui(1, depth);
+  gl::dispatch(count, kBarriers);
+  uint32_t counts[2] = {0, 0};
+  counters_.read(0, sizeof counts, counts);
+  return {counts[0], counts[1]};
+}
+
+void PathTracer::trace_shadows(uint32_t count, const Surroundings& around) {
+  if (count == 0) return;
+  tracing::OpacityBatch batch;
+  batch.rays = &shadow_rays_;
+  batch.hits = &shadow_hits_;
+  batch.count = count;
+  batch.listed = &shadow_list_;
+  batch.passed = &shadow_passed_;
+  batch.most_layers = uint32_t(settings_.paths.bounces.transparent);
+  opacity_.trace(around.tracer, around.triangles, around.scene, batch,
+                 alpha_ ? tracing::OpacityMode::kTransmittance : tracing::OpacityMode::kAnyHit,
+                 false, programs_);
+  rays_ += opacity_.rays();
+}
+
+void PathTracer::arrive(uint32_t count, const Surroundings& around) {
+  if (count == 0) return;
+  gl::PassScope scope(timer_, "direct_light");
+  const auto bind_arrivals = [&](const gl::Buffer& listed) {
+    bind(1, arrivals_);
+    bind(2, listed);
+    if (options_.light_passes) bind(3, shares_);
+    bind(6, sums_);
+  };
+  programs_.get(arrive_program(options_)).use();
+  bind_texels(sums_texels_, kSumsUnit);
+  bind_arrivals(shadow_list_);
+  bind(0, shadow_hits_);
+  if (options_.alpha) bind(4, shadow_passed_);
+  if (options_.deferred) {
+    counters_.clear();
+    bind(5, deferred_);
+    bind(7, counters_);
+  }
+  glUniform1ui(0, count);
+  gl::dispatch(count, kBarriers);
+  if (!options_.deferred) return;
+  uint32_t waiting = 0;
+  counters_.read(0, 4, &waiting);
+  if (waiting == 0) return;
+
+  const auto materials = uint32_t(around.scene.materials().size());
+  bins_.sort({shadow_hits_, waiting, &deferred_, false}, materials, around.triangles, programs_);
+  uint32_t first = 0;
+  for (size_t m = 0; m <= materials; first += bins_.counts()[m++]) {
+    const uint32_t rays = bins_.counts()[m];
+    if (rays == 0) continue;
+    if (m == materials) {
+      programs_.get(arrive_world_program(*around.scene.world(), options_)).use();
+      around.scene.bind_shading(*around.scene.world());
+      bind_texels(sums_texels_, kSumsUnit);
+    } else {
+      const gpu_scene::GpuMaterial& material = around.scene.materials()[m];
+      programs_.get(arrive_emitter_program(material, options_)).use();
+      around.scene.bind_geometry();
+      around.scene.bind_shading(material);
+      around.triangles.texture().bind(gpu_scene::kFreeUnit);
+    }
+    bind(0, shadow_rays_);
+    bind_arrivals(bins_.sorted());
+    glUniform2ui(1, first, rays);
+    gl::dispatch(rays, kBarriers);
+  }
+}
+
+void PathTracer::ambient_occlusion(uint32_t count, const Surroundings& around) {
+  if (count == 0) return;
+  gl::PassScope scope(timer_, "pass_ao");
+  counters_.clear();
+  programs_.get(occlusion_rays_program(options_)).use();
+  bind_texels(rays_texels_, kRaysUnit);
+  bind_texels(records_texels_, kRecordsUnit);
+  bind(0, shadow_rays_);
+  bind(1, shadow_passed_);
+  bind(2, shadow_list_);
+  bind(3, counters_);
+  glUniform1ui(0, count);
+  gl::dispatch(count, kBarriers);
+  uint32_t rays = 0;
+  counters_.read(0, 4, &rays);
+  trace_shadows(rays, around);
+  programs_.get(occlusion_program(options_)).use();
+  bind_texels(sums_texels_, kSumsUnit);
+  bind(0, shadow_hits_);
+  bind(1, shadow_passed_);
+  bind(2, shadow_list_);
+  bind(6, sums_);
+  glUniform1ui(0, rays);
+  gl::dispatch(rays, kBarriers);
+}
+
+void PathTracer::resolve(uint32_t count, film::Film& film) {
+  gl::PassScope scope(timer_, "film");
+  const gl::Buffer* listed = film.all_active() ? nullptr : &film.active_pixels();
+  programs_.get(resolve_program(options_, listed != nullptr, film)).use();
+  film.bind();
+  bind_texels(sums_texels_, kSumsUnit);
+  if (listed) bind(4, *listed);
+  gl::dispatch(count, kBarriers | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace panoptes::path_tracer

@@ -1,0 +1,11 @@
+// How a surface lies in its record: SurfaceHead, its emission where anything emits, its lobes.
+
+#if EMISSION
+const int LOBES_AT = 3;
+#else
+const int LOBES_AT = 2;
+#endif
+const int SURFACE_TEXELS = LOBES_AT + LOBES_TEXELS;
+
+// Of the coordinates at hand: 32 steps of a float, where the position of a hit is good to about 4.
+const float RAY_OFFSET = 3.8e-6;
