@@ -68,15 +68,14 @@ bool RenderThread::upload_ahead(scene::Scene& scene, std::mutex& mutex) {
   }
 }
 
-void RenderThread::publish(Job& job, const film::PassSet& passes, uint32_t samples) {
+void RenderThread::publish(Job& job, const film::PassSet& passes) {
   const RenderRequest& request = job.request();
   // False colours are to be read by their scale.
   const bool light = request.debug_picture == ray_picture::Kind::kNone;
   for (int i = 0; i < film::kPassCount; ++i)
     if (passes[size_t(i)])
-      job.publish(film::Pass(i),
-                  film_.read(film::Pass(i), int(samples), light ? request.exposure : 1.0f),
-                  samples);
+      job.publish(film::Pass(i), film_.read(film::Pass(i), light ? request.exposure : 1.0f),
+                  film_.samples());
 }
 
 void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effects& plan,
@@ -133,7 +132,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
                                            request.passes, request.debug_picture});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
-    film_.start(request.camera.width, request.camera.height, passes, wanted > 1 && !debug);
+    film_.start(request.camera.width, request.camera.height, passes,
+                {.moments = wanted > 1 && !debug});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
     if (debug)
       traced_.update(scene, gpu_scene_, programs_, timer_);
@@ -158,19 +158,20 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   while (done < wanted) {
     job.set_status(fmt::format("sample {} of {}", done + 1, wanted), float(done) / float(wanted));
     render_sample(job, request.first_sample + done);
+    film_.end_sample(request.first_sample + done);
     ++done;
     gl::check_errors("render");
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
       film::PassSet combined;
       combined.set(size_t(film::Pass::kCombined));
-      publish(job, combined, done);
+      publish(job, combined);
       last_live = Clock::now();
     }
     // Stop before a sample that would overrun the budget.
     const double spent = ms_since(start), each = ms_since(trace_start) / done;
     if (request.time_budget > 0 && spent + each > request.time_budget * 1000) break;
     if (request.noise_threshold > 0 && done % kErrorInterval == 0 && done < wanted) {
-      const std::optional<double> error = film_.estimated_error(int(done));
+      const std::optional<double> error = film_.estimated_error();
       if (error && *error < request.noise_threshold) break;
     }
   }
@@ -178,7 +179,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
 
   RenderStats stats;
   stats.trace_ms = ms_since(trace_start);
-  publish(job, request.passes, done);
+  publish(job, request.passes);
   const std::vector<gl::PassTime> times = timer_.times();
   stats.device = context_.device().renderer;
   stats.width = request.camera.width;
@@ -190,7 +191,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   stats.total_ms = ms_since(start);
   if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
-  stats.estimated_error = film_.estimated_error(int(done));
+  stats.estimated_error = film_.estimated_error();
   stats.warnings = std::move(warnings);
   job.set_status("done", 1);
   std::lock_guard lock(job.mutex_);

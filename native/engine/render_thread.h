@@ -30,7 +30,7 @@ class RenderThread {
   // Prepares for a frame that shows the scene, and frees what rays need.
   void begin_realtime(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
   void render_sample(const Job& job, uint32_t index);
-  void publish(Job& job, const film::PassSet& passes, uint32_t samples);
+  void publish(Job& job, const film::PassSet& passes);
 
   // Declared first, destroyed last: everything below holds GL objects.
   gl::Context context_;

@@ -14,18 +14,25 @@ enum class Pass {
 };
 constexpr int kPassCount = int(Pass::kCount);
 
+enum class PassKind {
+  kSum,      // of all samples, averaged
+  kFirst,    // of the first sample alone: neither filtered nor averaged
+  kSamples,  // tells of the samples: the film makes it itself
+};
+
 struct PassInfo {
   std::string_view name;      // Blender's
   int channels;               // 4: RGBA, 3: RGB or XYZ, 1: Z
-  std::string_view define;    // that gives its layer to the shaders
+  std::string_view define;    // that gives its layer to the shaders; none where the film makes it
   Pass divisor;               // colour that is divided out of it; itself for none
   bool light;                 // scaled by the film's exposure
+  PassKind kind = PassKind::kSum;
 };
 
 constexpr std::array<PassInfo, kPassCount> kPasses{{
     {"Combined", 4, "FILM_COMBINED", Pass::kCombined, true},
-    {"Depth", 1, "FILM_DEPTH", Pass::kDepth, false},
-    {"Position", 3, "FILM_POSITION", Pass::kPosition, false},
+    {"Depth", 1, "FILM_DEPTH", Pass::kDepth, false, PassKind::kFirst},
+    {"Position", 3, "FILM_POSITION", Pass::kPosition, false, PassKind::kFirst},
     {"Normal", 3, "FILM_NORMAL", Pass::kNormal, false},
     {"DiffCol", 3, "FILM_DIFFCOL", Pass::kDiffCol, false},
     {"DiffDir", 3, "FILM_DIFFDIR", Pass::kDiffCol, true},
@@ -39,7 +46,7 @@ constexpr std::array<PassInfo, kPassCount> kPasses{{
     {"Emit", 3, "FILM_EMIT", Pass::kEmit, true},
     {"Env", 3, "FILM_ENV", Pass::kEnv, true},
     {"AO", 3, "FILM_AO", Pass::kAo, false},
-    {"Debug Sample Count", 1, "FILM_SAMPLE_COUNT", Pass::kSampleCount, false},
+    {"Debug Sample Count", 1, "", Pass::kSampleCount, false, PassKind::kSamples},
 }};
 
 using PassSet = std::bitset<kPassCount>;

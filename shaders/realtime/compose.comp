@@ -95,11 +95,6 @@ void main() {
   const float coverage = 1.0;
 #endif
   film_add(FILM_COMBINED, pixel, vec4(combined, coverage));
-#ifdef FILM_MOMENTS
-  // Squares of more would overflow.
-  float brightness = clamp(dot(combined, vec3(0.2126, 0.7152, 0.0722)), -1.0e15, 1.0e15);
-  film_add(FILM_MOMENTS, pixel, vec4(brightness, brightness * brightness, 0.0, 0.0));
-#endif
 #ifdef FILM_NORMAL
   film_add(FILM_NORMAL, pixel, vec4(g.normal, 0.0));
 #endif

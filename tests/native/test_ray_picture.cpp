@@ -44,9 +44,10 @@ TEST(RayPictureScale, HasTheColoursThatItsHeaderSays) {
   const gpu_scene::Camera camera = orthographic({0, 0, 5}, {0, 0, 0}, 1, 5, 3);
   const std::atomic<bool> cancelled{false};
   const auto pixels = [&](Kind kind) {
-    film.start(5, 3, {}, false);
+    film.start(5, 3, {});
     picture.render(camera, kind, tracer, list, film, programs, timer, cancelled);
-    return film.read(Pass::kCombined, 1, 1.0f);
+    film.end_sample(0);
+    return film.read(Pass::kCombined, 1.0f);
   };
   for (uint32_t count : {0u, 3u, 15u, 40u, 63u, 255u, 1023u, 1500u, 4095u, 6000u}) {
     shared::TracedTriangle triangle{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, shared::SEEN_BY_ALL};

@@ -124,7 +124,7 @@ class Shaders : public ::testing::Test {
     // Passes only add stores; each alone, none and all stand for the rest.
     film::Film film;
     const auto with_film = [&](const film::PassSet& passes, bool moments, int bits) {
-      film.start(4, 4, passes, moments);
+      film.start(4, 4, passes, {.moments = moments});
       add(realtime::compose_program({bool(bits & 16), bool(bits & 32), bool(bits & 64),
                                      bool(bits & 128), surfaces(bits)},
                                     film));
@@ -137,7 +137,7 @@ class Shaders : public ::testing::Test {
       for (int bits : {0, 255}) with_film(film::PassSet().set(size_t(pass)), false, bits);
 
     for (bool moments : {false, true}) {
-      film.start(4, 4, film::PassSet().set(size_t(film::Pass::kDepth)), moments);
+      film.start(4, 4, film::PassSet().set(size_t(film::Pass::kDepth)), {.moments = moments});
       add(realtime::depth_program(film));
     }
 
@@ -145,7 +145,7 @@ class Shaders : public ::testing::Test {
       add(source);
     for (int kind = 1; kind < int(ray_picture::kKindNames.size()); ++kind)
       for (bool moments : {false, true}) {
-        film.start(4, 4, {}, moments);
+        film.start(4, 4, {}, {.moments = moments});
         add(ray_picture::false_colour_program(ray_picture::Kind(kind), film));
       }
     add(ray_picture::camera_rays_program());
