@@ -1,8 +1,8 @@
 // Closures: evaluate_material(hit, surface) adds them to a Surface.
 //
-// A Surface holds one lobe of each kind; several closures of a kind are merged, colours by sum,
-// roughness and normal by weight, which is exact for a single closure and a fair approximation for a
-// mix. The formulas are Cycles' (of 3.4 and, where they differ, of 4.0 and later).
+// A Surface holds one lobe of each kind. What becomes of several closures of a kind is said in
+// lobes_merged.glsl, or in lobes_apart.glsl where LOBES_APART is defined (the path tracer). The
+// formulas are Cycles' (of 3.4 and, where they differ, of 4.0 and later).
 
 struct Surface {
   vec3 diffuse;              // albedo
@@ -16,51 +16,57 @@ struct Surface {
   float ior;                 // far side over near side
   vec3 transparency;         // what passes straight through
   vec3 emission;             // radiance
-  vec3 normal;               // unit once finished
+  vec3 normal;               // of all closures, by weight; unit once finished
   vec3 smooth_normal;        // the interpolated one, as displacement leaves it
-  float coat, coat_roughness;  // a second, clear specular lobe; roughness as pack_coat() has it
+  float coat, coat_roughness;  // a second, clear specular lobe; negative: as of Disney's BRDF
   vec3 coat_normal;
   vec3 sheen;
   float sheen_roughness;     // of Ashikhmin's velvet; SHEEN_SCHLICK for the lobe of Cycles 3.4
+  float weight;              // sum of the closures' weights
+#ifdef LOBES_APART
+  uint seed;                 // of the choice among closures
+  vec3 diffuse_normal, specular_normal, transmission_normal, sheen_normal;
+#else
   // Sums of weights, until finish_surface() divides by them.
-  float weight, burley_weight, oren_nayar_weight, oren_nayar_roughness;
+  float burley_weight, oren_nayar_weight, oren_nayar_roughness;
   float specular_weight, transmission_weight, coat_weight, sheen_weight;
+#endif
 };
 
 const float LAMBERT = -1.0;
 const float SHEEN_SCHLICK = -1.0;
 
-Surface empty_surface() {
-  return Surface(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0),
-                 vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                 0.0, 0.0, 0.0);
-}
-
 // What is not finite, for whatever reason, counts as nothing.
 float finite(float x) { return abs(x) <= 1.0e30 ? x : 0.0; }
 vec3 finite(vec3 v) { return vec3(finite(v.x), finite(v.y), finite(v.z)); }
-float quotient(float sum, float weight) { return weight > 0.0 ? finite(sum / weight) : 0.0; }
 
-// Divides the merged quantities by their weights. Alpha is stochastic, so what a pixel keeps is
-// what the surface does where it is not transparent.
+// Reflections at grazing angles are seen over a twentieth of the sphere.
+float specular_amount(vec3 normal_incidence, vec3 grazing) {
+  return luminance(abs(normal_incidence) + 0.05 * abs(grazing));
+}
+
+#ifdef LOBES_APART
+#include "gpu_scene/lobes_apart.glsl"
+#else
+#include "gpu_scene/lobes_merged.glsl"
+#endif
+
+Surface empty_surface() {
+  Surface s;
+  s.diffuse = s.specular = s.grazing = s.transmission = s.transparency = s.emission = vec3(0.0);
+  s.normal = s.smooth_normal = s.coat_normal = s.sheen = vec3(0.0);
+  s.diffuse_roughness = s.specular_ior = s.roughness = s.transmission_roughness = s.ior = 0.0;
+  s.coat = s.coat_roughness = s.sheen_roughness = s.weight = 0.0;
+  empty_lobes(s);
+  return s;
+}
+
+// Alpha is stochastic, so what a pixel keeps is what the surface does where it is not transparent.
 void finish_surface(Hit hit, inout Surface s) {
   s.smooth_normal = safe_normalize(s.smooth_normal, hit.normal);
   s.normal = keep_reflection_above(hit.geometric_normal, hit.view,
                                    safe_normalize(s.normal, s.smooth_normal));
-  s.coat_normal = keep_reflection_above(hit.geometric_normal, hit.view,
-                                        safe_normalize(s.coat_normal, hit.normal));
-  // Two diffuse models do not blend: the one that reflects more stands for both.
-  s.diffuse_roughness =
-      s.burley_weight > s.oren_nayar_weight
-          ? clamp(quotient(s.diffuse_roughness, s.burley_weight), 0.0, 1.0)
-          : LAMBERT - clamp(quotient(s.oren_nayar_roughness, s.oren_nayar_weight), 0.0, 1.0);
-  s.roughness = clamp(quotient(s.roughness, s.specular_weight), 0.0, 1.0);
-  s.specular_ior = quotient(s.specular_ior, s.specular_weight);
-  s.transmission_roughness =
-      clamp(quotient(s.transmission_roughness, s.transmission_weight), 0.0, 1.0);
-  s.ior = s.transmission_weight > 0.0 ? quotient(s.ior, s.transmission_weight) : 1.0;
-  s.coat_roughness = clamp(quotient(s.coat_roughness, s.coat_weight), -1.0, 1.0);
-  s.sheen_roughness = clamp(quotient(s.sheen_roughness, s.sheen_weight), SHEEN_SCHLICK, 1.0);
+  finish_lobes(hit, s);
   s.diffuse = finite(s.diffuse);
   s.specular = finite(s.specular);
   s.grazing = finite(s.grazing);
@@ -81,7 +87,7 @@ void finish_surface(Hit hit, inout Surface s) {
 #endif
 }
 
-// --- lobes ------------------------------------------------------------------------------------------
+// --- closures ---------------------------------------------------------------------------------------
 
 void add_normal(inout Surface s, vec3 weight, vec3 normal) {
   float amount = luminance(abs(weight));
@@ -89,67 +95,18 @@ void add_normal(inout Surface s, vec3 weight, vec3 normal) {
   s.normal += amount * normal;
 }
 
-void add_burley(inout Surface s, vec3 albedo, float roughness) {
-  float amount = luminance(abs(albedo));
-  s.diffuse += albedo;
-  s.burley_weight += amount;
-  s.diffuse_roughness += amount * roughness;
-}
-
-void add_oren_nayar(inout Surface s, vec3 albedo, float roughness) {
-  float amount = luminance(abs(albedo));
-  s.diffuse += albedo;
-  s.oren_nayar_weight += amount;
-  s.oren_nayar_roughness += amount * clamp(roughness, 0.0, 1.0);
-}
-
-// `ior` of 1: reflects alike at all angles.
-void add_specular(inout Surface s, vec3 normal_incidence, vec3 grazing, float ior, float roughness) {
-  // Reflections at grazing angles are seen over a twentieth of the sphere.
-  float amount = luminance(abs(normal_incidence) + 0.05 * abs(grazing));
-  s.specular += normal_incidence;
-  s.grazing += grazing;
-  s.specular_weight += amount;
-  s.roughness += amount * roughness;
-  s.specular_ior += amount * ior;
-}
-
-void add_transmission(inout Surface s, vec3 amount, float ior, float roughness) {
-  float weight = luminance(abs(amount));
-  s.transmission += amount;
-  s.transmission_weight += weight;
-  s.transmission_roughness += weight * roughness;
-  s.ior += weight * ior;
-}
-
-void add_coat(inout Surface s, float amount, float roughness, vec3 normal) {
-  s.coat += amount;
-  s.coat_weight += abs(amount);
-  s.coat_roughness += abs(amount) * roughness;
-  s.coat_normal += abs(amount) * normal;
-}
-
-void add_sheen(inout Surface s, vec3 amount, float roughness) {
-  float weight = luminance(abs(amount));
-  s.sheen += amount;
-  s.sheen_weight += weight;
-  s.sheen_roughness += weight * roughness;
-}
-
-// --- closures ---------------------------------------------------------------------------------------
-
 void closure_diffuse(inout Surface s, vec3 weight, vec3 color, float roughness, vec3 normal) {
-  add_oren_nayar(s, weight * color, roughness);
+  add_oren_nayar(s, weight * color, roughness, normal);
   add_normal(s, weight, normal);
 }
 
 void closure_glossy(inout Surface s, vec3 weight, vec3 color, float roughness, vec3 normal) {
-  add_specular(s, weight * color, weight * color, 1.0, clamp(roughness, 0.0, 1.0));
+  add_specular(s, weight * color, weight * color, 1.0, clamp(roughness, 0.0, 1.0), normal);
   add_normal(s, weight, normal);
 }
 
 void closure_velvet(inout Surface s, vec3 weight, vec3 color, float sigma, vec3 normal) {
-  add_sheen(s, weight * color, clamp(sigma, 0.0, 1.0));
+  add_sheen(s, weight * color, clamp(sigma, 0.0, 1.0), normal);
   add_normal(s, weight, normal);
 }
 
@@ -165,14 +122,15 @@ void closure_glass(Hit hit, inout Surface s, vec3 weight, vec3 color, float roug
   float reflected = fresnel_dielectric(dot(normal, hit.view), ior);
   roughness = clamp(roughness, 0.0, 1.0);
   vec3 mirrored = weight * color * reflected;
-  add_specular(s, mirrored, mirrored, 1.0, roughness);
-  add_transmission(s, weight * color * (1.0 - reflected), ior, roughness);
+  add_specular(s, mirrored, mirrored, 1.0, roughness, normal);
+  add_transmission(s, weight * color * (1.0 - reflected), ior, roughness, normal);
   add_normal(s, weight, normal);
 }
 
 void closure_refraction(Hit hit, inout Surface s, vec3 weight, vec3 color, float roughness, float ior,
                         vec3 normal) {
-  add_transmission(s, weight * color, relative_ior(hit.backfacing, ior), clamp(roughness, 0.0, 1.0));
+  add_transmission(s, weight * color, relative_ior(hit.backfacing, ior), clamp(roughness, 0.0, 1.0),
+                   normal);
   add_normal(s, weight, normal);
 }
 
@@ -224,24 +182,26 @@ void closure_principled_v3(inout Surface s, vec3 weight, Principled p) {
 
   // Burley's diffuse lobe; light that wanders below the surface leaves where it enters.
   add_burley(s, weight * dielectric * mix(p.base_color, p.subsurface_color, p.subsurface),
-             p.roughness);
+             p.roughness, p.normal);
   float brightness = dot(p.base_color, vec3(0.3, 0.6, 0.1));  // as Disney's BRDF has it
   vec3 hue = brightness > 0.0 ? p.base_color / brightness : vec3(1.0);
-  add_sheen(s, weight * dielectric * p.sheen * mix(vec3(1.0), hue, p.sheen_tint), SHEEN_SCHLICK);
+  add_sheen(s, weight * dielectric * p.sheen * mix(vec3(1.0), hue, p.sheen_tint), SHEEN_SCHLICK,
+            p.normal);
 
   vec3 f0 = mix(0.08 * p.specular * mix(vec3(1.0), hue, p.specular_tint), p.base_color, p.metallic);
   float root = sqrt(max(0.08 * p.specular, 0.0));
   if (p.specular > 0.0 || p.metallic > 0.0)
     add_specular(s, weight * (1.0 - transmitted) * f0, weight * (1.0 - transmitted),
-                 2.0 / max(1.0 - root, 1.0e-3) - 1.0, p.roughness);
+                 2.0 / max(1.0 - root, 1.0e-3) - 1.0, p.roughness, p.normal);
 
   float ior = relative_ior(p.backfacing, p.ior);
   float reflected = fresnel_dielectric(dot(p.normal, p.view), ior);
   vec3 mirrored = weight * transmitted * reflected;
   add_specular(s, mirrored * mix(vec3(1.0), p.base_color, p.specular_tint), mirrored, ior,
-               p.roughness);
+               p.roughness, p.normal);
   add_transmission(s, weight * transmitted * (1.0 - reflected) * p.base_color, ior,
-                   1.0 - (1.0 - p.roughness) * (1.0 - clamp(p.transmission_roughness, 0.0, 1.0)));
+                   1.0 - (1.0 - p.roughness) * (1.0 - clamp(p.transmission_roughness, 0.0, 1.0)),
+                   p.normal);
   // Negative: the distribution of the Disney BRDF.
   add_coat(s, luminance(weight) * 0.25 * p.coat, -clamp(p.coat_roughness, 0.0, 1.0), p.coat_normal);
 }
@@ -260,25 +220,26 @@ void closure_principled_v4(inout Surface s, vec3 weight, Principled p) {
   float within = sqrt(max(1.0 - (1.0 - coat_cosine * coat_cosine) / (coat_ior * coat_ior), 1.0e-4));
   weight *= mix(vec3(1.0), pow(max(p.coat_tint, vec3(0.0)), vec3(1.0 / within)), min(coat, 1.0));
   weight *= 1.0 - min(coat, 1.0) * fresnel_dielectric(coat_cosine, coat_ior);
-  add_sheen(s, weight * p.sheen * p.sheen_tint, clamp(p.sheen_roughness, 0.0, 1.0));
+  add_sheen(s, weight * p.sheen * p.sheen_tint, clamp(p.sheen_roughness, 0.0, 1.0), p.normal);
 
   float metal = p.metallic, glass = (1.0 - metal) * clamp(p.transmission, 0.0, 1.0);
   float dielectric = (1.0 - metal) * (1.0 - clamp(p.transmission, 0.0, 1.0));
-  add_specular(s, weight * metal * p.base_color, weight * metal, 1.5, p.roughness);
+  add_specular(s, weight * metal * p.base_color, weight * metal, 1.5, p.roughness, p.normal);
 
   float ior = relative_ior(p.backfacing, p.ior);
   float reflected = fresnel_dielectric(dot(p.normal, p.view), ior);
   vec3 mirrored = weight * glass * reflected * p.specular_tint;
-  add_specular(s, mirrored, mirrored, 1.0, p.roughness);
-  add_transmission(s, weight * glass * (1.0 - reflected) * p.base_color, ior, p.roughness);
+  add_specular(s, mirrored, mirrored, 1.0, p.roughness, p.normal);
+  add_transmission(s, weight * glass * (1.0 - reflected) * p.base_color, ior, p.roughness, p.normal);
 
   float f0 = min(2.0 * p.specular * reflectance_from_ior(max(p.ior, 1.0e-3)), 0.99);
   float root = sqrt(max(f0, 0.0));
   add_specular(s, weight * dielectric * f0 * p.specular_tint, weight * dielectric * (f0 > 0.0 ? 1.0 : 0.0),
-               (1.0 + root) / (1.0 - root), p.roughness);
+               (1.0 + root) / (1.0 - root), p.roughness, p.normal);
   // The base gets what the reflection on it leaves.
   vec3 reflected_above = environment_reflectance(f0 * p.specular_tint, vec3(f0 > 0.0 ? 1.0 : 0.0),
                                                  p.roughness, max(dot(p.normal, p.view), 0.0));
   float below = 1.0 - max(max(reflected_above.r, reflected_above.g), reflected_above.b);
-  add_oren_nayar(s, weight * dielectric * max(below, 0.0) * p.base_color, p.diffuse_roughness);
+  add_oren_nayar(s, weight * dielectric * max(below, 0.0) * p.base_color, p.diffuse_roughness,
+                 p.normal);
 }

@@ -1,28 +1,12 @@
 // Lobes and falloffs of direct light. Each lobe is without its cosine; Cycles is the reference.
-#include "base/fresnel.glsl"
-
-const float PI = 3.14159265359;
-
-float fifth_power(float x) {
-  float squared = x * x;
-  return squared * squared * x;
-}
+#include "base/scattering.glsl"
 
 vec3 half_vector(vec3 n, vec3 v, vec3 l) { return normalize(l + v + 1.0e-12 * n); }
 
-// Burley's diffuse lobe (Burley 2012) for roughness 0..1; below, at -1 - roughness, the improved
-// qualitative model of Oren and Nayar (Fujii), which without roughness is Lambert's. Without albedo.
+// diffuse_lobe() of directions.
 float diffuse_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
-  float nl = clamp(dot(n, l), 0.0, 1.0), nv = clamp(dot(n, v), 0.0, 1.0);
-  if (roughness < 0.0) {
-    float r = -1.0 - roughness;
-    float across = dot(l, v) - nl * nv;
-    if (across > 0.0) across /= max(max(nl, nv), 1.0e-6);
-    return (1.0 + r * across) / (PI + (0.5 * PI - 2.0 / 3.0) * r);
-  }
-  float lh = dot(l, half_vector(n, v, l));
-  float f90 = 0.5 + 2.0 * roughness * lh * lh;
-  return (1.0 + (f90 - 1.0) * fifth_power(1.0 - nl)) * (1.0 + (f90 - 1.0) * fifth_power(1.0 - nv)) / PI;
+  return diffuse_lobe(roughness, clamp(dot(n, l), 0.0, 1.0), clamp(dot(n, v), 0.0, 1.0), dot(l, v),
+                      dot(l, half_vector(n, v, l)));
 }
 
 // Share of white light from everywhere that the diffuse lobe sends back. Oren and Nayar's is exact;
@@ -79,18 +63,10 @@ float coat_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
   return fresnel * distribution * masking;
 }
 
-// Ashikhmin's velvet of that deviation; for negative roughness the sheen of Disney's BRDF.
+// sheen_lobe() of directions.
 float sheen_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
   vec3 h = half_vector(n, v, l);
-  float lh = clamp(dot(l, h), 1.0e-5, 1.0);
-  if (roughness < 0.0) return fifth_power(1.0 - lh);
-  float nl = clamp(dot(n, l), 1.0e-5, 1.0), nv = clamp(dot(n, v), 1.0e-5, 1.0);
-  float nh = clamp(dot(n, h), 1.0e-5, 1.0 - 1.0e-5);
-  float sine2 = 1.0 - nh * nh;
-  float inverse = 1.0 / max(roughness * roughness, 1.0e-4);
-  float distribution = exp(-nh * nh / sine2 * inverse) * inverse / (PI * sine2 * sine2);
-  float masking = min(1.0, 2.0 * nh / lh * min(nl, nv));
-  return 0.25 * distribution * masking / (nl * nv);
+  return sheen_lobe(roughness, dot(n, l), dot(n, v), dot(n, h), dot(l, h));
 }
 
 // Share of white light from everywhere that the sheen sends back: fits to quadrature.
@@ -100,21 +76,6 @@ float sheen_albedo(float roughness, float nv) {
   if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
   float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
   return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
-}
-
-// Where a mapped normal leaves the interpolated one, light fades out before the surface's own
-// horizon instead of being cut there (Conty Estevez et al. 2019, with Cycles' polynomial).
-float bump_shadowing(vec3 smooth_normal, vec3 n, vec3 l) {
-  float across = dot(n, l) * dot(n, smooth_normal);
-  float g = dot(smooth_normal, l) / (abs(across) > 1.0e-12 ? across : 1.0e-12);
-  if (g >= 1.0) return 1.0;
-  if (g <= 0.0) return 0.0;
-  return g * (1.0 + g - g * g);
-}
-
-// The share of a light that falls on a surface from `l`.
-float incidence(vec3 smooth_normal, vec3 n, vec3 l) {
-  return bump_shadowing(smooth_normal, n, l) * max(dot(n, l), 0.0);
 }
 
 // Measured in Cycles 3.4: the cone's smooth step times the cosine, as of a disk square to the axis.
