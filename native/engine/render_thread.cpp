@@ -23,6 +23,14 @@ constexpr double kLiveIntervalMs = 100;
 // The estimated error needs a copy of the film: look at it every so many samples.
 constexpr uint32_t kErrorInterval = 4;
 
+bool traces_paths(const RenderRequest& request) {
+  return request.method == Method::kPrimitive &&
+         request.debug_picture == ray_picture::Kind::kNone;
+}
+
+// About the rays of a path, for the choice of a structure before any was traced.
+constexpr int64_t kRaysOfPath = 6;
+
 // The passes of an effect have its name, or begin with it: "structure_lists".
 bool belongs(const std::string& pass, const std::string& effect) {
   return pass == effect || pass.starts_with(effect + '_');
@@ -44,7 +52,8 @@ std::vector<EffectReport> report(const plan::Effects& plan,
 
 RenderThread::RenderThread(const gl::ContextOptions& options)
     : context_(options), timer_(context_.device()), gpu_scene_(context_.device()),
-      realtime_(context_.device(), programs_, timer_), traced_(context_.device()) {}
+      realtime_(context_.device(), programs_, timer_), traced_(context_.device()),
+      path_tracer_(context_.device(), programs_, timer_) {}
 
 void RenderThread::render(Job& job, scene::Scene& scene, std::mutex& mutex) {
   std::string error;
@@ -82,6 +91,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
                                   scene::Scene& scene) {
   traced_.release();
   ray_picture_.release();
+  path_tracer_.release();
   realtime::Settings settings;
   settings.shadows.resolution = request.shadow_resolution;
   settings.seed = request.seed;
@@ -99,8 +109,27 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
   realtime_.begin(request.camera, plan, settings, request.last_sample == 1, scene, gpu_scene_);
 }
 
+void RenderThread::begin_paths(const RenderRequest& request, const plan::Effects& plan,
+                               scene::Scene& scene) {
+  ray_picture_.release();
+  film::PassSet passes = request.passes;
+  if (request.force_all_effects) passes.set();
+  path_tracer_.begin(request.camera, plan,
+                     {request.paths, request.seed, request.filter_width, request.transparent_film},
+                     scene, gpu_scene_, traced_.triangles(), film::with_divisors(passes));
+}
+
 void RenderThread::render_sample(const Job& job, uint32_t index) {
   const RenderRequest& request = job.request();
+  if (traces_paths(request)) {
+    const Clock::time_point start = Clock::now();
+    const int64_t before = path_tracer_.rays();
+    path_tracer_.render_sample(index, index == request.first_sample,
+                               {gpu_scene_, traced_.tracer(), traced_.triangles()}, film_,
+                               job.cancelled_);
+    traced_.note_rays(path_tracer_.rays() - before, ms_since(start));
+    return;
+  }
   if (request.debug_picture == ray_picture::Kind::kNone) {
     realtime_.render_sample(index, request.first_sample, request.last_sample, gpu_scene_, film_,
                             job.cancelled_);
@@ -122,6 +151,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   job.set_status("uploading the scene", 0);
   const uint32_t wanted = request.last_sample - request.first_sample;
   const bool debug = request.debug_picture != ray_picture::Kind::kNone;
+  const bool paths = traces_paths(request);
   plan::Effects plan;
   std::vector<std::string> warnings;
   {
@@ -129,22 +159,23 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     gpu_scene_.update(scene);
     plan = plan::make_plan(scene.facts(), {int(request.last_sample), request.soft_shadows,
                                            request.filter_penumbrae, request.force_all_effects,
-                                           request.passes, request.debug_picture});
+                                           request.passes, request.debug_picture, paths,
+                                           {request.paths, request.camera.lens.radius > 0}});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
                 {.moments = wanted > 1 && !debug});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
-    if (debug)
-      traced_.update(scene, gpu_scene_, programs_, timer_);
-    else
-      begin_realtime(request, plan, scene);
+    if (debug || paths) traced_.update(scene, gpu_scene_, programs_, timer_);
+    if (paths) begin_paths(request, plan, scene);
+    if (!debug && !paths) begin_realtime(request, plan, scene);
     warnings = scene.warnings();
   }
-  if (debug) {
+  if (debug || paths) {
     job.set_status("building the structure for rays", 0);
-    traced_.build(request.structure, int64_t(request.camera.width) * request.camera.height,
-                  programs_, timer_);
+    const int64_t pixels = int64_t(request.camera.width) * request.camera.height;
+    traced_.build(request.structure, paths ? pixels * wanted * kRaysOfPath : pixels, programs_,
+                  timer_);
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);
   for (const std::string& warning : traced_.warnings()) warnings.push_back(warning);
@@ -189,6 +220,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
   stats.build_ms = build_ms;
   stats.total_ms = ms_since(start);
+  if (paths) stats.rays = path_tracer_.rays();
   if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
   stats.estimated_error = film_.estimated_error();

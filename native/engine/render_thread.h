@@ -7,6 +7,7 @@
 #include "gl/pass_timer.h"
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
+#include "path_tracer/path_tracer.h"
 #include "ray_picture/ray_picture.h"
 #include "realtime/realtime.h"
 
@@ -29,6 +30,7 @@ class RenderThread {
   void render_frame(Job& job, scene::Scene& scene, std::mutex& mutex);
   // Prepares for a frame that shows the scene, and frees what rays need.
   void begin_realtime(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
+  void begin_paths(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
   void render_sample(const Job& job, uint32_t index);
   void publish(Job& job, const film::PassSet& passes);
 
@@ -41,6 +43,7 @@ class RenderThread {
   realtime::Realtime realtime_;
   TracedScene traced_;
   ray_picture::RayPicture ray_picture_;
+  path_tracer::PathTracer path_tracer_;
 };
 
 }  // namespace panoptes::engine

@@ -115,7 +115,8 @@ void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& pla
 
 int64_t PathTracer::record_bytes() const {
   // As path_tracer/surface_record.glsl and lobes.glsl have them.
-  return 16 * (2 + options_.surfaces.emission + lobes_texels(options_.surfaces));
+  const rasterize::GBufferOptions& s = options_.surfaces;
+  return 16 * (2 + s.emission + 2 + 2 * (s.glossy + s.transmission + s.layers));
 }
 
 void PathTracer::reserve(uint32_t paths) {

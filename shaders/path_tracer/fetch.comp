@@ -46,8 +46,7 @@ void main() {
   // Wide enough for what positions on this triangle are rounded by, along the ray and in the list.
   float offset = RAY_OFFSET * (reach(hit.position) + reach(hit.edge1) + reach(hit.edge2));
   records[record] = uvec4(floatBitsToUint(hit.position), floatBitsToUint(offset));
-  records[record + 1u] = uvec4(pack_unit(hit.geometric_normal), pack_unit(surface.smooth_normal),
-                               floatBitsToUint(hit.bulge), path);
+  records[record + 1u] = uvec4(path, floatBitsToUint(hit.bulge), 0u, 0u);
 #if EMISSION
   records[record + 2u] = uvec4(floatBitsToUint(surface.emission), 0u);
 #endif

@@ -200,6 +200,21 @@ vec3 lobes_color_glossy(Lobes l) {
   return color;
 }
 
+// The mean of the lobes' normals, by how much each reflects.
+vec3 lobes_normal(Lobes l) {
+  vec3 sum = l.chances.diffuse * l.normal;
+#if GLOSSY
+  sum += l.chances.specular * l.specular_normal;
+#endif
+#if TRANSMISSION
+  sum += l.chances.transmission * l.transmission_normal;
+#endif
+  return dot(sum, sum) > 0.0 ? normalize(sum) : l.smooth_normal;
+}
+
+// Whether light from behind the surface passes on to the viewer.
+bool transmits(Lobes l) { return l.chances.transmission > 0.0; }
+
 vec3 lobes_color_transmission(Lobes l) {
 #if TRANSMISSION
   return l.transmission;

@@ -25,12 +25,13 @@ void main() {
   if (i >= count) return;
   int record = int(i) * SURFACE_TEXELS;
   uvec4 head0 = texelFetch(records, record), head1 = texelFetch(records, record + 1);
-  uint index = head1.w;
+  uint index = head1.x;
   uint pixel = floatBitsToUint(texelFetch(rays_in, int(index) * 3 + 2).w);
   vec3 arriving = texelFetch(rays_in, int(index) * 3 + 1).xyz;
   uvec4 texels[LOBES_TEXELS];
   for (int k = 0; k < LOBES_TEXELS; ++k) texels[k] = texelFetch(records, record + LOBES_AT + k);
-  vec3 n = lobes_normal(unpack_lobes(texels, -arriving));
+  Lobes lobes = unpack_lobes(texels, -arriving);
+  vec3 n = lobes_normal(lobes);
 
   uint key = hash(frame.range.y ^ hash(pixel));
   vec2 u = path_pair(key, frame.range.x, OCCLUSION_PAIR);
@@ -39,10 +40,9 @@ void main() {
   vec3 direction = n + vec3(sqrt(max(1.0 - z * z, 0.0)) * vec2(cos(angle), sin(angle)), z);
   float size = length(direction);
   direction = size > 1.0e-4 ? direction / size : n;
-  vec3 geometric_normal = unpack_unit(head1.x);
   // Below the surface's own plane nothing is open.
-  if (dot(direction, geometric_normal) <= 0.0) return;
-  vec3 origin = uintBitsToFloat(head0.xyz) + uintBitsToFloat(head0.w) * geometric_normal;
+  if (dot(direction, lobes.geometric_normal) <= 0.0) return;
+  vec3 origin = uintBitsToFloat(head0.xyz) + uintBitsToFloat(head0.w) * lobes.geometric_normal;
   float reach = frame.clamps.w > 0.0 ? min(frame.clamps.w, frame.camera.w) : frame.camera.w;
   occlusion_rays[index] = TracedRay(origin.x, origin.y, origin.z, 0.0, direction.x, direction.y,
                                     direction.z, reach, NO_PRIMITIVE, SEEN_BY_SHADOW,

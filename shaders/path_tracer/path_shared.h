@@ -18,17 +18,6 @@ struct PathState {
 };
 SHARED_ASSERT_SIZE(PathState, 32)
 
-// A surface that a path has met, before its emission and its lobes.
-struct SurfaceHead {
-  float x, y, z;
-  float offset;           // how far off the surface rays begin, metres
-  uint geometric_normal;  // pack_unit(), on the path's side
-  uint smooth_normal;
-  float bulge;            // Hit::bulge, metres
-  uint path;              // whose surface it is
-};
-SHARED_ASSERT_SIZE(SurfaceHead, 32)
-
 // Light on its way along a shadow ray: what arrives if nothing stops it.
 struct Arrival {
   float r, g, b;

@@ -1,5 +1,4 @@
 // One sample of each path's pixel, into the film.
-#include "base/color.glsl"
 #include "base/invocation.glsl"
 #include "path_tracer/path_shared.h"
 #include "film/film.glsl"
@@ -20,12 +19,7 @@ void main() {
 #endif
   ivec2 pixel = ivec2(number % frame.size.x, number / frame.size.x);
   int first = int(path) * PASSES;
-  vec4 combined = texelFetch(sums, first);
-  film_add(FILM_COMBINED, pixel, combined);
-#ifdef FILM_MOMENTS
-  float brightness = clamp(luminance(combined.rgb), -1.0e15, 1.0e15);
-  film_add(FILM_MOMENTS, pixel, vec4(brightness, brightness * brightness, 0.0, 0.0));
-#endif
+  film_add(FILM_COMBINED, pixel, texelFetch(sums, first));
 #ifdef PASS_NORMAL
   film_add(FILM_NORMAL, pixel, texelFetch(sums, first + PASS_NORMAL));
 #endif

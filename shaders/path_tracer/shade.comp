@@ -59,9 +59,8 @@ void main() {
   int record = int(i) * SURFACE_TEXELS;
   uvec4 head0 = texelFetch(records, record), head1 = texelFetch(records, record + 1);
   vec3 position = uintBitsToFloat(head0.xyz);
-  float offset = uintBitsToFloat(head0.w), bulge = uintBitsToFloat(head1.z);
-  vec3 geometric_normal = unpack_unit(head1.x), smooth_normal = unpack_unit(head1.y);
-  uint index = head1.w;
+  float offset = uintBitsToFloat(head0.w), bulge = uintBitsToFloat(head1.y);
+  uint index = head1.x;
 
   Path path = fetch_path(index);
   vec4 ray0 = texelFetch(rays_in, int(index) * 3), ray1 = texelFetch(rays_in, int(index) * 3 + 1);
@@ -136,7 +135,7 @@ void main() {
   LightSample light;
   vec3 choice = vec3(path_pair(key, frame.range.x, dimension + LIGHT_PAIR),
                      path_pair(key, frame.range.x, dimension + LIGHT_CHOICE_PAIR).x);
-  if (light_sample(position, both_sides ? vec3(0.0) : smooth_normal, choice, light)) {
+  if (light_sample(position, both_sides ? vec3(0.0) : lobes.smooth_normal, choice, light)) {
     BsdfValue value = bsdf_evaluate(lobes, light.direction);
     // What scattered rays of that kind cannot meet is for light samples alone.
     float weight = power_heuristic(light.pdf, value.pdf);
@@ -146,10 +145,10 @@ void main() {
     vec3 all = value.diffuse + value.glossy + value.transmission;
     vec3 contribution = path.throughput * all * light.value / light.pdf;
     if (largest(contribution) > 0.0) {
-      float facing = dot(geometric_normal, light.direction);
+      float facing = dot(lobes.geometric_normal, light.direction);
       float away = facing < 0.0 ? -offset : offset;
       if (facing > 0.0) away += bulge * clamp(1.0 - facing / TERMINATOR, 0.0, 1.0);
-      vec3 origin = position + away * geometric_normal;
+      vec3 origin = position + away * lobes.geometric_normal;
       shadow_rays[index] = TracedRay(origin.x, origin.y, origin.z, 0.0, light.direction.x,
                                      light.direction.y, light.direction.z,
                                      min(light.t_max, frame.camera.w), NO_PRIMITIVE, SEEN_BY_SHADOW,
@@ -191,7 +190,7 @@ void main() {
     path.throughput /= stays;
   }
 
-  vec3 origin = position + (dot(geometric_normal, next.direction) < 0.0 ? -offset : offset) * geometric_normal;
+  vec3 origin = position + (dot(lobes.geometric_normal, next.direction) < 0.0 ? -offset : offset) * lobes.geometric_normal;
   uint seen_by = next.kind == BOUNCE_DIFFUSE  ? SEEN_BY_DIFFUSE
                  : next.kind == BOUNCE_GLOSSY ? SEEN_BY_GLOSSY
                                               : SEEN_BY_TRANSMISSION;
@@ -201,7 +200,7 @@ void main() {
   uint state = index * uint(STATE_TEXELS);
   new_states[state] = uvec4(floatBitsToUint(path.throughput),
                             floatBitsToUint(next.singular ? 0.0 : next.pdf));
-  new_states[state + 1u] = uvec4(floatBitsToUint(least), pack_unit(smooth_normal), path.turns,
+  new_states[state + 1u] = uvec4(floatBitsToUint(least), pack_unit(lobes.smooth_normal), path.turns,
                                  floatBitsToUint(path.length + t));
 #if LIGHT_PASSES
   new_states[state + 2u] = uvec4(floatBitsToUint(path.diffuse_share), 0u);

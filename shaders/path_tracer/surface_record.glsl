@@ -1,4 +1,6 @@
-// How a surface lies in its record: SurfaceHead, its emission where anything emits, its lobes.
+// How a surface that a path has met is stored, after path_tracer/lobes.glsl: a texel {position about the
+// list of triangles, metres; how far off the surface rays begin, metres}, one {number of the path;
+// Hit::bulge, metres}, its emission where anything emits, its lobes.
 
 #if EMISSION
 const int LOBES_AT = 3;
