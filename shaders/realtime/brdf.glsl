@@ -1,4 +1,5 @@
 // Lobes and falloffs of direct light. Each lobe is without its cosine; Cycles is the reference.
+#include "base/falloff.glsl"
 #include "base/fresnel.glsl"
 
 const float PI = 3.14159265359;
@@ -115,19 +116,4 @@ float bump_shadowing(vec3 smooth_normal, vec3 n, vec3 l) {
 // The share of a light that falls on a surface from `l`.
 float incidence(vec3 smooth_normal, vec3 n, vec3 l) {
   return bump_shadowing(smooth_normal, n, l) * max(dot(n, l), 0.0);
-}
-
-// Measured in Cycles 3.4: the cone's smooth step times the cosine, as of a disk square to the axis.
-float spot_falloff(vec2 cone, float cosine) {
-  if (cosine <= cone.x) return 0.0;
-  float t = clamp((cosine - cone.x) * cone.y, 0.0, 1.0);
-  return cosine * t * t * (3.0 - 2.0 * t);
-}
-
-// One-sided Lambertian emitter; `spread` narrows it (Cycles' formula, measured).
-float area_falloff(vec2 spread, float cosine) {
-  if (cosine <= 0.0) return 0.0;
-  if (spread.x < 0.0) return cosine;
-  float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
-  return cosine * max(spread.x - tangent, 0.0) * spread.y;
 }
