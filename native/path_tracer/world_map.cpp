@@ -12,10 +12,34 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 // Widths of the map: fine enough for a sky without an image, and what a frame can bear.
-constexpr int kLeastWidth = 512, kMostWidth = 2048;
+constexpr int kLeastWidth = 1024, kMostWidth = 2048;
 constexpr int kMostPoints = 4;  // along each side of a texel
 
 constexpr double kEven = 0.05;  // share of samples that are spread evenly
+
+// A texel is taken to be at least so bright beside the brightest of its neighbours: its points may have
+// missed the rim of a sun.
+constexpr float kRim = 1.0f / 8;
+
+std::vector<float> with_rims(const std::vector<float>& values, glm::ivec2 size) {
+  // Rows, then columns; directions go on around the poles' axis, not across the poles.
+  std::vector<float> across(values.size()), result(values.size());
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      const float* row = &values[size_t(y) * size_t(size.x)];
+      across[size_t(y) * size_t(size.x) + size_t(x)] =
+          std::max({row[x], row[(x + 1) % size.x], row[(x + size.x - 1) % size.x]});
+    }
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      const auto at = [&](int row) {
+        return across[size_t(std::clamp(row, 0, size.y - 1)) * size_t(size.x) + size_t(x)];
+      };
+      const size_t i = size_t(y) * size_t(size.x) + size_t(x);
+      result[i] = std::max(values[i], kRim * std::max({at(y - 1), at(y), at(y + 1)}));
+    }
+  return result;
+}
 
 // Sums of `values` before each of them and after the last, divided by that.
 void accumulate(std::span<const double> values, float* sums) {
@@ -81,7 +105,7 @@ void WorldMap::update(const gpu_scene::GpuScene& gpu, const gl::DeviceInfo& devi
   const double sum = std::accumulate(brightness.begin(), brightness.end(), 0.0);
   irradiance_ = float(0.25 * sum);
   if (!any()) return;
-  buffer_ = gl::Buffer(std::span<const float>(world_distribution(brightness, size_.x, size_.y)));
+  buffer_ = gl::Buffer(std::span<const float>(world_distribution(with_rims(brightness, size_), size_.x, size_.y)));
   texture_ = gl::Texture(GL_R32F, buffer_);
 }
 

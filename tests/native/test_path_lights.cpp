@@ -76,6 +76,85 @@ vec4 run(vec3 position, vec3 normal, uint index) {
 }
 )";
 
+// x: 1 where samples found no light.
+constexpr const char* kNothing = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  return vec4(light_sample(position, normal, random3(), s) ? 0.0 : 1.0);
+}
+)";
+
+// As kIrradiance, by samples and by evenly spread rays, weighted by the power heuristic.
+constexpr const char* kBothWays = R"(
+const float EVEN = 1.0 / 12.56637061436;
+vec3 even_direction() {
+  vec2 u = random3().xy;
+  float z = 2.0 * u.x - 1.0, r = sqrt(max(1.0 - z * z, 0.0)), phi = 6.28318530718 * u.y;
+  return vec3(r * cos(phi), r * sin(phi), z);
+}
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  float e = 0.0;
+  if (light_sample(position, normal, random3(), s)) {
+    float ratio = s.singular ? 0.0 : EVEN / s.pdf;
+    e += radiance_of(s).g * max(dot(normal, s.direction), 0.0) / s.pdf / (1.0 + ratio * ratio);
+  }
+  vec3 direction = even_direction();
+  vec3 seen = lamps_seen(position, normal, direction, FAR, EVEN);
+#if WORLD_SAMPLED
+  float ratio = light_pdf_world(position, normal, direction) / EVEN;
+  seen += finite_world(direction) / (1.0 + ratio * ratio);
+#endif
+  e += seen.g * max(dot(normal, direction), 0.0) / EVEN;
+  return vec4(e, e * e, 0.0, 0.0);
+}
+)";
+
+// Of lamps' whole radiance, as rays see it whose scattering was singular.
+constexpr const char* kRaysAlone = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  vec2 u = random3().xy;
+  float z = 2.0 * u.x - 1.0, r = sqrt(max(1.0 - z * z, 0.0)), phi = 6.28318530718 * u.y;
+  vec3 direction = vec3(r * cos(phi), r * sin(phi), z);
+  float e = lamps_seen(position, normal, direction, FAR, 0.0).g * max(dot(normal, direction), 0.0) *
+            12.56637061436;
+  return vec4(e, e * e, 0.0, 0.0);
+}
+)";
+
+// y: 1 where a sample's density is not that of the hit that it stands for; z: 1 where it is a triangle's.
+constexpr const char* kTriangleDensities = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  if (!light_sample(position, normal, random3(), s) || s.source == LIGHT_KNOWN) return vec4(0.0);
+  float pdf = light_pdf_primitive(position, normal, s.source, s.direction, s.t_max * 4096.0 / 4095.0);
+  return vec4(0.0, abs(pdf - s.pdf) <= 1.0e-3 * s.pdf ? 0.0 : 1.0, 1.0, 0.0);
+}
+)";
+
+// The same of the world; texels are thin, so that rounding may put a few into the next.
+constexpr const char* kWorldDensities = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  if (!light_sample(position, normal, random3(), s)) return vec4(0.0);
+  float pdf = light_pdf_world(position, normal, s.direction);
+  for (int i = 0; i < 9 && abs(pdf - s.pdf) > 1.0e-3 * s.pdf; ++i) {
+    vec3 near = vec3(float(i % 3 - 1), float(i / 3 - 1), 0.0) * 2.0e-6;
+    pdf = light_pdf_world(position, normal, normalize(s.direction + near));
+  }
+  return vec4(0.0, abs(pdf - s.pdf) <= 1.0e-3 * s.pdf ? 0.0 : 1.0, 0.0, 0.0);
+}
+)";
+
+// x: the density's integral, by evenly spread directions.
+constexpr const char* kWorldWhole = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  vec2 u = random3().xy;
+  float z = 2.0 * u.x - 1.0, r = sqrt(max(1.0 - z * z, 0.0)), phi = 6.28318530718 * u.y;
+  return vec4(light_pdf_world(position, normal, vec3(r * cos(phi), r * sin(phi), z)) * 12.56637061436);
+}
+)";
+
 struct Receiver {
   glm::vec4 position, normal;
 };
@@ -253,21 +332,212 @@ TEST_F(PathLights, LampsOfEveryKindGiveTheirIrradiance) {
   }
 }
 
-TEST_F(PathLights, ProbabilitiesSumToOne) {
+// `count` times each of `kinds`, anywhere within `extent`.
+TestScene strewn(const std::vector<scene::Light>& kinds, int count, float extent) {
   TestScene s;
   std::mt19937 random(3);
-  std::uniform_real_distribution<float> u(-1, 1);
-  for (int i = 0; i < 300; ++i)
-    for (scene::Light lamp : one_of_each()) {
-      lamp.object_to_world = glm::translate(glm::mat4(1), 30.0f * glm::vec3(u(random), u(random), u(random))) *
-                             lamp.object_to_world;
+  std::uniform_real_distribution<float> u(-extent, extent);
+  for (int i = 0; i < count; ++i)
+    for (scene::Light lamp : kinds) {
+      lamp.object_to_world =
+          glm::translate(glm::mat4(1), glm::vec3(u(random), u(random), u(random))) * lamp.object_to_world;
       s.lights.push_back(lamp);
     }
-  install(s);
-  EXPECT_EQ(lights.lamp_count(), 2700u);
+  return s;
+}
+
+TEST_F(PathLights, ProbabilitiesSumToOne) {
   const std::vector<Place> receivers = places(40, 30);
-  for (const glm::dvec4& mean : run(kProbability, receivers, 27, 100))
-    EXPECT_NEAR(mean.x * 2700, 1, 1e-4);
+  // Points shine everywhere.
+  install(strewn({point({0, 0, 0}, 100, 0.1f), point({1, 0, 0}, 1), sun({1, 1, -1}, 0.01f)}, 500, 30));
+  for (const glm::dvec4& mean : run(kProbability, receivers, 15, 100))
+    EXPECT_NEAR(mean.x * 1500, 1, 1e-4);
+  // Cones leave places that nothing reaches, which only the walk finds out.
+  install(strewn(one_of_each(), 300, 30));
+  EXPECT_EQ(lights.lamp_count(), 2700u);
+  const std::vector<glm::dvec4> sums = run(kProbability, receivers, 27, 100);
+  const std::vector<glm::dvec4> nothing = run(kNothing, receivers, 64, 256);
+  for (size_t i = 0; i < receivers.size(); ++i)
+    EXPECT_NEAR(sums[i].x * 2700 + nothing[i].x, 1, 5 * std::sqrt(0.25 / (64 * 256)));
+}
+
+// Every kind of sample and every kind of hit together give what samples alone give.
+TEST_F(PathLights, LampsThatRaysMeetShareTheirLightWithSamples) {
+  constexpr uint32_t kInvocations = 64, kRuns = 400;
+  const std::vector<Place> receivers = places(16, 1.5f);
+  std::vector<std::vector<scene::Light>> sets;
+  for (const scene::Light& lamp : one_of_each())
+    if (lamp.extended()) sets.push_back({lamp});
+  sets.push_back(one_of_each());
+  for (size_t i = 0; i < sets.size(); ++i) {
+    SCOPED_TRACE(i);
+    TestScene s;
+    s.lights = sets[i];
+    install(s);
+    EXPECT_TRUE(lights.lamps_seen());
+    std::vector<double> due;
+    for (const Place& place : receivers) {
+      due.push_back(0);
+      for (const scene::Light& lamp : sets[i]) due.back() += irradiance(lamp, place);
+    }
+    expect_unbiased(run(kBothWays, receivers, kInvocations, kRuns), due, kInvocations * kRuns);
+    if (sets[i].size() > 1) continue;
+    // And rays alone.
+    expect_unbiased(run(kRaysAlone, receivers, 4 * kInvocations, kRuns), due,
+                    4 * kInvocations * kRuns);
+  }
+}
+
+// --- glowing triangles ---------------------------------------------------------------------------
+
+scene::Material glow(const glm::vec3& radiance, bool varies) {
+  scene::Material m = emitter(radiance);
+  m.facts.emission_varies = varies;
+  return m;
+}
+
+// Irradiance that a mesh of constant radiance gives, by Lambert's formula for polygons, with each
+// triangle clipped to the receiver's horizon.
+double irradiance(const Geometry& mesh, double radiance, const Place& place) {
+  double sum = 0;
+  for (const glm::ivec3& t : mesh.triangles) {
+    std::vector<glm::dvec3> corners, above;
+    const glm::dvec3 n(place.normal);
+    for (int k = 0; k < 3; ++k)
+      corners.push_back(glm::dvec3(mesh.positions[size_t(t[k])]) - glm::dvec3(place.position));
+    for (size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 a = corners[k], b = corners[(k + 1) % 3];
+      const double za = glm::dot(a, n), zb = glm::dot(b, n);
+      if (za >= 0) above.push_back(a);
+      if ((za >= 0) != (zb >= 0)) above.push_back(a + (b - a) * (za / (za - zb)));
+    }
+    double triangle = 0;
+    for (size_t k = 0; k < above.size(); ++k) {
+      const glm::dvec3 a = glm::normalize(above[k]), b = glm::normalize(above[(k + 1) % above.size()]);
+      const glm::dvec3 across = glm::cross(a, b);
+      const double sine = glm::length(across);
+      if (sine > 1e-12) triangle += std::atan2(sine, glm::dot(a, b)) * glm::dot(across / sine, n);
+    }
+    sum += 0.5 * radiance * std::abs(triangle);
+  }
+  return sum;
+}
+
+TEST_F(PathLights, TrianglesGlowByLambertsFormula) {
+  constexpr uint32_t kInvocations = 64, kRuns = 256;
+  const std::vector<Place> receivers = places(16, 2);
+  // A patch on both sides of the receivers and a bumpy strip; no two shade each other here.
+  const Geometry patch = quad({0.5f, 0.3f, 3}, {1, 0, 0.2f}, {0, 1.5f, 0});
+  const Geometry strip = quad({-3, 0, 0}, {0, 0.1f, 0.3f}, {0.1f, 2, 0});
+  for (bool mirrored : {false, true}) {
+    TestScene s;
+    s.add_object(patch, {s.add_material(glow({2, 3, 4}, false))});
+    s.add_object(strip, {s.add_material(glow({5, 6, 7}, false))},
+                 mirrored ? glm::scale(glm::mat4(1), {1, -1, 1}) : glm::mat4(1));
+    install(s);
+    EXPECT_EQ(lights.triangle_count(), 4u);
+    EXPECT_FALSE(lights.emitters_vary());
+    std::vector<double> due;
+    Geometry other = strip;
+    if (mirrored)
+      for (glm::vec3& p : other.positions) p.y = -p.y;
+    for (const Place& place : receivers)
+      due.push_back(irradiance(patch, 3, place) + irradiance(other, 6, place));
+    expect_unbiased(run(kIrradiance, receivers, kInvocations, kRuns), due, kInvocations * kRuns, 1e-4);
+  }
+}
+
+TEST_F(PathLights, AHitOnATriangleHasTheDensityOfItsSamples) {
+  TestScene s;
+  const Id glowing = s.add_material(glow({1, 2, 3}, true)), dark = s.add_material(lambert());
+  s.add_object(floor_at(-3, 5), {dark});
+  s.add_object(sphere({1, 2, 0}, 0.5f, 24), {glowing});
+  Geometry both = quad({-2, 0, 1}, {0, 1, 0}, {0, 0, 1});
+  both.add(quad({-2, 0, -1}, {0, 1, 0}, {0, 0, 0.1f}), 1);
+  s.add_object(both, {dark, glowing}, glm::scale(glm::mat4(1), {1, 2, -1}));
+  s.lights = one_of_each();
+  install(s);
+  EXPECT_TRUE(lights.emitters_vary());
+  const std::vector<glm::dvec4> means = run(kTriangleDensities, places(32, 3), 32, 64);
+  double triangles = 0;
+  for (const glm::dvec4& mean : means) {
+    EXPECT_EQ(mean.y, 0);
+    triangles += mean.z;
+  }
+  EXPECT_GT(triangles, 1);
+}
+
+TEST_F(PathLights, DarkAndHiddenTrianglesAreNoLights) {
+  TestScene s;
+  const Id black = s.add_material(glow({0, 0, 0}, true)), bright = s.add_material(glow({1, 1, 1}, false));
+  s.add_object(floor_at(0, 1), {black});
+  s.add_object(floor_at(1, 1), {bright});
+  s.instances.back().visibility = shared::SEEN_BY_CAMERA | shared::SEEN_BY_SHADOW;
+  s.add_object(floor_at(2, 0), {bright});
+  install(s);
+  EXPECT_EQ(lights.triangle_count(), 0u);
+  EXPECT_FALSE(lights.any());
+  EXPECT_EQ(lights.bytes(), int64_t(sizeof(shared::LightConstants)));
+}
+
+// --- the world -----------------------------------------------------------------------------------
+
+// A dim sky with a sun of .01 rad and radiance 20 000 in it, towards (0, 3, 4).
+constexpr const char* kSkyWithSun =
+    "vec3 evaluate_world(vec3 direction) {\n"
+    "  bool sun = distance(normalize(direction), vec3(0.0, 0.6, 0.8)) < 0.01;\n"
+    "  return vec3(sun ? 20000.0 : 0.2 + 0.2 * direction.z);\n"
+    "}\n";
+
+TEST_F(PathLights, TheWorldGivesItsIrradiance) {
+  constexpr uint32_t kInvocations = 64, kRuns = 400;
+  TestScene s;
+  s.world = world(kSkyWithSun);
+  install(s);
+  EXPECT_TRUE(lights.world_sampled());
+  const std::vector<Place> receivers = places(16, 1);
+  std::vector<double> due;
+  for (const Place& place : receivers) {
+    const glm::dvec3 n(place.normal);
+    // Of .2 + .2 z: pi / 5 + the clamped cosine's first harmonic, 2 pi / 3.
+    due.push_back(kPi * 0.2 + 0.2 * 2 * kPi / 3 * n.z +
+                  20000 * kPi * 0.01 * 0.01 * std::max(0.0, glm::dot(n, glm::dvec3(0, 0.6, 0.8))));
+  }
+  const std::vector<glm::dvec4> means = run(kIrradiance, receivers, kInvocations, kRuns);
+  expect_unbiased(means, due, kInvocations * kRuns, 0.002);
+  // The sun is found at once: by even samples the standard deviation would be a hundred times the mean.
+  for (size_t i = 0; i < due.size(); ++i)
+    EXPECT_LT(std::sqrt(means[i].y - means[i].x * means[i].x), 6 * due[i] + 2);
+  expect_unbiased(run(kBothWays, receivers, kInvocations, kRuns), due, kInvocations * kRuns, 0.002);
+  for (const glm::dvec4& mean : run(kWorldDensities, receivers, 32, 64)) EXPECT_EQ(mean.y, 0);
+  s.world = world("vec3 evaluate_world(vec3 direction) { return vec3(1.0 + direction.x); }\n");
+  install(s);
+  for (const glm::dvec4& mean : run(kWorldWhole, {receivers[0]}, 256, 400)) EXPECT_NEAR(mean.x, 1, 0.01);
+}
+
+TEST_F(PathLights, TheWorldAndLampsShareSamples) {
+  constexpr uint32_t kInvocations = 64, kRuns = 400;
+  TestScene s;
+  s.world = world("vec3 evaluate_world(vec3 direction) { return vec3(1.0 + direction.z); }\n");
+  s.lights = one_of_each();
+  s.add_object(quad({0.5f, 0.3f, 3}, {1, 0, 0.2f}, {0, 1.5f, 0}), {s.add_material(glow({2, 3, 4}, false))});
+  install(s);
+  const std::vector<Place> receivers = places(16, 1.5f);
+  std::vector<double> due;
+  for (const Place& place : receivers) {
+    due.push_back(kPi + 2 * kPi / 3 * place.normal.z +
+                  irradiance(quad({0.5f, 0.3f, 3}, {1, 0, 0.2f}, {0, 1.5f, 0}), 3, place));
+    for (const scene::Light& lamp : s.lights) due.back() += irradiance(lamp, place);
+  }
+  expect_unbiased(run(kIrradiance, receivers, kInvocations, kRuns), due, kInvocations * kRuns);
+}
+
+TEST_F(PathLights, AWorldOfOneColourIsLeftToScatteredRays) {
+  TestScene s;
+  s.world = constant_world({1, 1, 1});
+  install(s);
+  EXPECT_FALSE(lights.any());
+  EXPECT_FALSE(lights.world_sampled());
 }
 
 }  // namespace
