@@ -1,11 +1,8 @@
 #include "rasterize/emitter_lights.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 
 namespace panoptes::rasterize {
 
@@ -26,14 +23,6 @@ double brightness(const glm::vec4& radiance) {
 }
 
 }  // namespace
-
-gl::ProgramSource emitter_program(const gpu_scene::GpuMaterial& material) {
-  gl::ProgramSource source;
-  source.name = fmt::format("light of material '{}'", material.name);
-  source.stages = {{GL_COMPUTE_SHADER, "rasterize/emitters.comp"}};
-  gpu_scene::GpuScene::add_material(material, source);
-  return source;
-}
 
 void EmitterLights::clear() {
   emitters_.clear();
@@ -98,45 +87,14 @@ EmitterLights::Draw EmitterLights::draw(uint32_t index) const {
 
 std::vector<shared::EmitterRadiance> EmitterLights::radiances(const std::vector<Draw>& draws,
                                                               const Gpu& gpu) const {
-  std::vector<shared::EmitterRadiance> result(draws.size());
-  if (draws.empty()) return result;
-  // Each material runs over its own points, which lie together.
-  std::map<scene::Id, std::vector<size_t>> by_material;
-  for (size_t i = 0; i < draws.size(); ++i)
-    by_material[emitters_[draws[i].source].emitter.material()].push_back(i);
-  std::vector<shared::EmitterPlace> places;
-  for (const auto& [id, indices] : by_material)
-    for (size_t i : indices) {
-      const scene::EmitterPoint& p = draws[i].point;
-      places.push_back({gpu.scene.place_of(p.instance), p.triangle, p.barycentrics.x, p.barycentrics.y});
-    }
-  const gl::Buffer input{std::span<const shared::EmitterPlace>(places)};
-  const gl::Buffer output(int64_t(places.size() * sizeof(shared::EmitterRadiance)));
-  gpu.view_block.set(gpu.view);
-  gpu.scene.bind_geometry();
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, input.id());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, output.id());
-  GLuint first = 0;
-  for (const auto& [id, indices] : by_material) {
-    const auto& materials = gpu.scene.materials();
-    const auto material = std::find_if(materials.begin(), materials.end(),
-                                       [id = id](const auto& m) { return m.id == id; });
-    const GLuint count = GLuint(indices.size());
-    if (material != materials.end()) {
-      gpu.programs.get(emitter_program(*material)).use();
-      gpu.scene.bind_shading(*material);
-      glUniform2ui(1, first, count);
-      glDispatchCompute((count + 63) / 64, 1, 1);
-    }
-    first += count;
+  std::vector<EmitterProbe> probes;
+  for (const Draw& draw : draws) {
+    const scene::EmitterPoint& p = draw.point;
+    probes.push_back({emitters_[draw.source].emitter.material(),
+                      {gpu.scene.place_of(p.instance), p.triangle, p.barycentrics.x, p.barycentrics.y}});
   }
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  std::vector<shared::EmitterRadiance> sorted(places.size());
-  output.read(0, output.bytes(), sorted.data());
-  size_t next = 0;
-  for (const auto& [id, indices] : by_material)
-    for (size_t i : indices) result[i] = sorted[next++];
-  return result;
+  gpu.view_block.set(gpu.view);
+  return emitted_radiance(probes, gpu.scene, gpu.programs);
 }
 
 const std::vector<MeshLight>& EmitterLights::sample(uint32_t index, const Gpu& gpu) {

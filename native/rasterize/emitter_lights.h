@@ -9,7 +9,7 @@
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
 #include "gpu_scene/view_block.h"
-#include "rasterize/emitters_shared.h"
+#include "rasterize/emitter_radiance.h"
 #include "rasterize/g_buffer.h"
 #include "scene/emitters.h"
 
@@ -27,8 +27,6 @@ struct MeshLight {
   glm::vec3 front, back;  // radiance times the area that the point stands for, W/sr along the normal
   float reach = 0;  // metres: nearer than that, light is bounded as at that distance
 };
-
-gl::ProgramSource emitter_program(const gpu_scene::GpuMaterial& material);
 
 // The `index`-th of a sequence of points in [0,1)^2, stratified over every power of two of them.
 using PointSequence = std::function<glm::vec2(uint32_t index)>;

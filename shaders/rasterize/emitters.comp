@@ -1,5 +1,6 @@
 // The radiance that leaves points of glowing surfaces, to the front and to the back, square to the
 // surface. One material runs over its own points.
+#include "base/invocation.glsl"
 #include "gpu_scene/material.glsl"
 #include "generated/material.glsl"
 #include "rasterize/emitters_shared.h"
@@ -31,8 +32,9 @@ vec3 radiance(EmitterPlace place, float side) {
 }
 
 void main() {
-  if (gl_GlobalInvocationID.x >= range.y) return;
-  uint i = range.x + gl_GlobalInvocationID.x;
+  uint i = invocation();
+  if (i >= range.y) return;
+  i += range.x;
   radiances[i].front = vec4(radiance(places[i], 1.0), 0.0);
   radiances[i].back = vec4(radiance(places[i], -1.0), 0.0);
 }

@@ -1,4 +1,5 @@
 // Lobes and falloffs of direct light. Each lobe is without its cosine; Cycles is the reference.
+#include "base/falloff.glsl"
 #include "base/scattering.glsl"
 
 vec3 half_vector(vec3 n, vec3 v, vec3 l) { return normalize(l + v + 1.0e-12 * n); }
@@ -76,19 +77,4 @@ float sheen_albedo(float roughness, float nv) {
   if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
   float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
   return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
-}
-
-// Measured in Cycles 3.4: the cone's smooth step times the cosine, as of a disk square to the axis.
-float spot_falloff(vec2 cone, float cosine) {
-  if (cosine <= cone.x) return 0.0;
-  float t = clamp((cosine - cone.x) * cone.y, 0.0, 1.0);
-  return cosine * t * t * (3.0 - 2.0 * t);
-}
-
-// One-sided Lambertian emitter; `spread` narrows it (Cycles' formula, measured).
-float area_falloff(vec2 spread, float cosine) {
-  if (cosine <= 0.0) return 0.0;
-  if (spread.x < 0.0) return cosine;
-  float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
-  return cosine * max(spread.x - tangent, 0.0) * spread.y;
 }

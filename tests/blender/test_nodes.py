@@ -145,8 +145,9 @@ class TestFacts:
 
     def test_plain(self, scene):
         facts = Tree().compile().facts
-        assert facts == {'alpha': False, 'emission': False, 'normal_map': False, 'glossy': True,
-                         'transmission': False, 'layers': False, 'attributes': []}
+        assert facts == {'alpha': False, 'emission': False, 'emission_varies': False,
+                         'normal_map': False, 'glossy': True, 'transmission': False,
+                         'layers': False, 'attributes': []}
 
     def test_alpha(self, scene):
         tree = Tree()
@@ -169,6 +170,42 @@ class TestFacts:
         tree.surface.inputs['Strength'].default_value = 0.0
         shader = tree.compile()
         assert not shader.facts['emission'] and 'closure' not in shader.code
+
+    @pytest.mark.parametrize('kind', ['ShaderNodeEmission', 'ShaderNodeBsdfPrincipled'])
+    def test_emission_varies_where_a_node_decides(self, scene, kind):
+        color = 'Color' if kind == 'ShaderNodeEmission' else compat.PRINCIPLED_SOCKETS['emission']
+        sockets = ['Alpha'] if kind == 'ShaderNodeBsdfPrincipled' else []
+        strength = 'Strength' if kind == 'ShaderNodeEmission' else 'Emission Strength'
+        for socket in [None, color, strength, *sockets]:
+            tree = Tree(kind)
+            tree.surface.inputs[color].default_value = (1.0, 0.5, 0.2, 1.0)
+            tree.surface.inputs[strength].default_value = 2.0
+            if sockets:
+                tree.surface.inputs['Alpha'].default_value = 0.5
+            facts = tree.compile().facts
+            assert facts['emission'] and not facts['emission_varies']
+            if socket:
+                tree.link(tree.add('ShaderNodeTexNoise'), 'Fac', tree.surface, socket)
+                facts = tree.compile().facts
+                assert facts['emission'] and facts['emission_varies'], socket
+
+    def test_emission_does_not_vary_by_values_of_nodes(self, scene):
+        tree = Tree('ShaderNodeEmission')
+        tree.link(tree.add('ShaderNodeValue'), 0, tree.surface, 'Strength')
+        assert not tree.compile().facts['emission_varies']
+
+    def test_emission_varies_with_the_weight_of_its_closure(self, scene):
+        for factor in (None, 'ShaderNodeNewGeometry', 'ShaderNodeLayerWeight'):
+            tree = Tree('ShaderNodeMixShader')
+            inner = tree.add('ShaderNodeAddShader')
+            tree.link(tree.add('ShaderNodeEmission'), 0, inner, 0)
+            tree.link(tree.add('ShaderNodeBsdfDiffuse'), 0, inner, 1)
+            tree.link(inner, 0, tree.surface, 2)
+            if factor:
+                output = 'Backfacing' if factor == 'ShaderNodeNewGeometry' else 'Facing'
+                tree.link(tree.add(factor), output, tree.surface, 0)
+            facts = tree.compile().facts
+            assert facts['emission'] and facts['emission_varies'] == (factor is not None)
 
     def test_transmission(self, scene):
         tree = Tree()

@@ -23,10 +23,10 @@ class CompiledShader(NamedTuple):
 
     `code` is GLSL, identical for trees of the same structure. `params` is float32[P, 4], at least
     one row. `textures` lists (Image, 'LINEAR' or 'CLOSEST', 'REPEAT', 'EXTEND' or 'CLIP',
-    ImageUser). `facts` are the booleans alpha, emission, normal_map, glossy, transmission and
-    layers (a coat or a sheen), and 'attributes', the names behind ATTRIBUTE(n). `constant` is a
-    world's radiance (r, g, b) where it is the same in every direction, else None. `warnings` are
-    sentences for the artist.
+    ImageUser). `facts` are the booleans alpha, emission, emission_varies (over the surface or by
+    its side), normal_map, glossy, transmission and layers (a coat or a sheen), and 'attributes',
+    the names behind ATTRIBUTE(n). `constant` is a world's radiance (r, g, b) where it is the same in
+    every direction, else None. `warnings` are sentences for the artist.
     """
 
     code: str

@@ -91,6 +91,7 @@ def order_shaders(compiler, root):
 def write_surface(compiler, root):
     """Write the closures of a material's surface, whose `Source` is `root`."""
     weights = {}
+    varying = set()
     order = order_shaders(compiler, root)
     if order:
         weights[order[0][0]] = ['vec3(1.0)']
@@ -102,7 +103,10 @@ def write_surface(compiler, root):
             factor = mix_factor(use) if any(role != 'same' for _, role in children) else None
             for child, role in children:
                 weights.setdefault(child, []).append(_scaled(weight, factor, role))
+                if key in varying or (role != 'same' and factor.constant is None):
+                    varying.add(child)
         else:
+            compiler.weight_varies = key in varying
             _write_closure(compiler, use, source, weight)
 
 
@@ -124,6 +128,7 @@ def _write_closure(compiler, use, source, weight):
     if socket_kind(source.socket) != 'shader':
         # A colour linked straight into a shader socket shines with that colour.
         value = convert(compiler.source_value(source._replace(kinds=('color',))), 'color')
+        compiler.note_emission(value)
         _emit(compiler, weight, value.code)
         return
     writer = CLOSURES.get(use.node.type)
@@ -140,7 +145,6 @@ def _write_closure(compiler, use, source, weight):
 
 
 def _emit(compiler, weight, radiance):
-    compiler.facts['emission'] = True
     compiler.statement(f'closure_emission(surface, {weight}, {radiance});')
 
 
@@ -229,7 +233,9 @@ def emission(use, weight):
     """Emission node (a Background linked to a surface shines as well)."""
     if is_black(use, 'Color', 'Strength'):
         return
-    _emit(use.compiler, weight, f'{use.get("Color", "color")} * {use.get("Strength", "float")}')
+    color, strength = convert(use.value('Color'), 'color'), convert(use.value('Strength'), 'float')
+    use.compiler.note_emission(color, strength)
+    _emit(use.compiler, weight, f'{color.code} * {strength.code}')
 
 
 @closure('MIX_SHADER', 'ADD_SHADER')

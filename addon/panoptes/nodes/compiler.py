@@ -124,8 +124,10 @@ class Compiler:
         self.normal = 'hit.normal'
         self.textures = []
         self.attributes = []
-        self.facts = {'alpha': False, 'emission': False, 'normal_map': False, 'glossy': False,
-                      'transmission': False, 'layers': False}
+        self.facts = {'alpha': False, 'emission': False, 'emission_varies': False,
+                      'normal_map': False, 'glossy': False, 'transmission': False, 'layers': False}
+        # Whether the weight of the closure at hand may be another at each place or side.
+        self.weight_varies = False
         self.warnings = []
         self.depends_on_objects = False
         self._texture_slots = {}
@@ -179,6 +181,12 @@ class Compiler:
         self.functions.append(
             f'{"float" if kind == "float" else "vec3"} {name}(const Hit hit)\n{{\n{body}    return {result};\n}}\n')
         return name
+
+    def note_emission(self, *values):
+        """Note that the closure at hand emits by these values (`Value`) and its weight."""
+        self.facts['emission'] = True
+        if self.weight_varies or any(value.constant is None for value in values):
+            self.facts['emission_varies'] = True
 
     def helper(self, name):
         """Make a helper function (and those it calls) available; return its name."""

@@ -3,6 +3,7 @@
 
 from .. import compat
 from .closures import closure, is_black
+from .values import convert
 
 # Fields of the GLSL struct Principled that are read when their weight is not an unlinked 0: the
 # weight first, then (field, kind) of what shapes its term.
@@ -54,13 +55,17 @@ def principled(use, weight):
             read(term, 'float')
             for field, kind in fields:
                 read(field, kind)
+    scales = []
     if use.constant('Alpha') != 1.0:
         compiler.facts['alpha'] = True
-        assign('alpha', use.get('Alpha', 'float'))
+        alpha = convert(use.value('Alpha'), 'float')
+        scales.append(alpha)
+        assign('alpha', alpha.code)
     if not is_black(use, names['emission'], 'Emission Strength'):
-        compiler.facts['emission'] = True
-        color, strength = use.get(names['emission'], 'color'), use.get('Emission Strength', 'float')
-        assign('emission', f'{color} * {strength}')
+        color = convert(use.value(names['emission']), 'color')
+        strength = convert(use.value('Emission Strength'), 'float')
+        compiler.note_emission(color, strength, *scales)
+        assign('emission', f'{color.code} * {strength.code}')
     assign('normal', use.normal())
     if runs('coat'):
         assign('coat_normal', use.normal(names['coat_normal']))
