@@ -20,6 +20,7 @@ using panoptes::fail;
 constexpr const char* kUsage =
     "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
     "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
+    "                       [--method realtime|primitive] [--bounces N]\n"
     "                       [--structure auto|orthographic|cube|lists|bvh] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
@@ -27,18 +28,20 @@ struct Arguments {
   int width = 0, height = 0, samples = 0, repeat = 1;
   bool software = false;
   std::optional<panoptes::ray_picture::Kind> debug;
+  std::optional<panoptes::engine::Method> method;
+  int bounces = -1;
   panoptes::engine::StructureSettings structure;
 };
 
-int positive(const std::string& option, const std::string& text) {
+int whole(const std::string& option, const std::string& text, int least = 1) {
   size_t used = 0;
   int value = 0;
   try {
     value = std::stoi(text, &used);
   } catch (const std::exception&) {
   }
-  if (used != text.size() || value < 1)
-    fail("{} takes a whole number from 1, not '{}': see --help", option, text);
+  if (used != text.size() || value < least)
+    fail("{} takes a whole number from {}, not '{}': see --help", option, least, text);
   return value;
 }
 
@@ -52,9 +55,16 @@ Arguments parse(const std::vector<std::string>& words) {
     };
     if (word == "-o") a.output = value();
     else if (word == "--stats") a.stats = value();
-    else if (word == "--samples") a.samples = positive(word, value());
-    else if (word == "--repeat") a.repeat = positive(word, value());
-    else if (word == "--software") a.software = true;
+    else if (word == "--samples") a.samples = whole(word, value());
+    else if (word == "--repeat") a.repeat = whole(word, value());
+    else if (word == "--bounces") a.bounces = whole(word, value(), 0);
+    else if (word == "--method") {
+      const std::string& name = value();
+      if (name != "realtime" && name != "primitive")
+        fail("--method takes realtime or primitive, not '{}': see --help", name);
+      a.method = name == "primitive" ? panoptes::engine::Method::kPrimitive
+                                     : panoptes::engine::Method::kRealtime;
+    } else if (word == "--software") a.software = true;
     else if (word == "--debug") {
       a.debug = panoptes::ray_picture::find_kind(value());
       if (!panoptes::ray_picture::known(*a.debug))
@@ -65,14 +75,14 @@ Arguments parse(const std::vector<std::string>& words) {
       if (int(a.structure.structure) < 0)
         fail("--structure takes one of {}, not '{}': see --help",
              fmt::join(panoptes::engine::kStructureNames, ", "), words[i]);
-    } else if (word == "--tiles") a.structure.tiles = positive(word, value());
-    else if (word == "--buckets") a.structure.buckets = positive(word, value());
+    } else if (word == "--tiles") a.structure.tiles = whole(word, value());
+    else if (word == "--buckets") a.structure.buckets = whole(word, value());
     else if (word == "--size") {
       const std::string& size = value();
       const size_t x = size.find('x');
       if (x == std::string::npos) fail("--size takes WxH, not '{}': see --help", size);
-      a.width = positive(word, size.substr(0, x));
-      a.height = positive(word, size.substr(x + 1));
+      a.width = whole(word, size.substr(0, x));
+      a.height = whole(word, size.substr(x + 1));
     } else if (!word.empty() && word[0] == '-') fail("unknown option '{}': see --help", word);
     else if (a.scene.empty()) a.scene = word;
     else fail("more than one scene was given: name one snapshot");
@@ -107,6 +117,8 @@ void run(const Arguments& arguments) {
     request.camera.height = arguments.height;
   }
   request.passes.set(size_t(panoptes::film::Pass::kCombined));
+  request.method = arguments.method.value_or(request.method);
+  if (arguments.bounces >= 0) request.paths.bounces.total = arguments.bounces;
   request.debug_picture = arguments.debug.value_or(request.debug_picture);
   if (arguments.structure != panoptes::engine::StructureSettings{})
     request.structure = arguments.structure;

@@ -147,7 +147,7 @@ void PathTracer::release() {
                              &shadow_rays_, &shadow_hits_, &shadow_passed_, &arrivals_, &shares_,
                              &going_, &shadow_list_, &deferred_, &counters_})
     *buffer = gl::Buffer();
-  lights_ = Lights();
+  lights_ = Lights(device_);
 }
 
 void PathTracer::set_frame(uint32_t index, uint32_t first_pixel, uint32_t count) {
@@ -159,7 +159,8 @@ void PathTracer::set_frame(uint32_t index, uint32_t first_pixel, uint32_t count)
 
 void PathTracer::render_sample(uint32_t index, bool first, const Surroundings& around,
                                film::Film& film, const std::atomic<bool>& cancelled) {
-  const auto pixels = uint32_t(film.active_count());
+  const auto pixels = film.all_active() ? uint32_t(film.width()) * uint32_t(film.height())
+                                        : uint32_t(film.active_count());
   reserve(std::min(pixels, kBatch));
   for (uint32_t start = 0; start < pixels; start += kBatch) {
     const uint32_t count = std::min(pixels - start, kBatch);

@@ -42,7 +42,7 @@ struct FrameSettings {
 class PathTracer {
  public:
   PathTracer(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
-      : device_(device), programs_(programs), timer_(timer) {}
+      : device_(device), programs_(programs), timer_(timer), lights_(device) {}
 
   // Prepares for a frame of these passes (completed by what they are divided by): lists the lights and
   // compiles the programs of all materials.
@@ -63,8 +63,7 @@ class PathTracer {
 
  private:
   void reserve(uint32_t paths);
-  void begin_paths(uint32_t index, uint32_t first_pixel, uint32_t count, bool centre,
-                   const film::PassSet& passes);
+  void begin_paths(uint32_t count, bool centre, const film::Film& film);
   void trace_paths(uint32_t count, const Surroundings& around, const std::atomic<bool>& cancelled);
   void trace(uint32_t count, const gl::Buffer* listed, float threshold, const Surroundings& around);
   void fetch(const Surroundings& around);

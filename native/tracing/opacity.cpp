@@ -142,7 +142,7 @@ uint32_t OpacityWaves::decide(const Frame& frame) {
     bind(kHits, *frame.batch.hits);
     bind(kRays, *frame.batch.rays);
     bind(kCounter, counter_);
-    bind(kListIn, sorted_);
+    bind(kListIn, bins_.sorted());
     bind(kListOut, list_);
     if (options.weighted) bind(kPassed, *frame.batch.passed);
     glUniform2ui(1, first, bins[m]);

@@ -2,6 +2,7 @@
 #include "base/invocation.glsl"
 #include "path_tracer/path_shared.h"
 #include "path_tracer/light_sums.glsl"
+#include "path_tracer/lights_shared.h"
 #include "tracing/rays_shared.h"
 
 layout(local_size_x = 64) in;

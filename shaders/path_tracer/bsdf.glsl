@@ -44,6 +44,9 @@ BsdfValue bsdf_evaluate(Lobes l, vec3 direction) {
   vec3 v = l.view;
   float side = dot(l.geometric_normal, direction);
   float reflected = side > 0.0 ? 1.0 : 0.0;
+  // Where a normal is mapped, light fades out on diffuse surfaces before the horizon of the
+  // interpolated one, and is cut off there on others: so it is in Cycles, measured.
+  float above_horizon = dot(l.smooth_normal, direction) > 0.0 ? 1.0 : 0.0;
   vec3 h = direction + v;
   float squared = dot(h, h);
   h = squared > 1.0e-20 ? h * inversesqrt(squared) : l.normal;
@@ -58,9 +61,11 @@ BsdfValue bsdf_evaluate(Lobes l, vec3 direction) {
 
 #if LAYERS
   nl = clamp(dot(l.sheen_normal, direction), 0.0, 1.0);
+  float arriving = l.sheen_roughness < 0.0
+                       ? bump_shadowing(l.smooth_normal, l.sheen_normal, direction)
+                       : above_horizon;
   value.diffuse += l.sheen * (sheen_lobe(l.sheen_roughness, nl, dot(l.sheen_normal, v),
-                                         dot(l.sheen_normal, h), lh) *
-                              incidence(l.smooth_normal, l.sheen_normal, direction));
+                                         dot(l.sheen_normal, h), lh) * nl * arriving);
   value.pdf += nl > 0.0 ? l.chances.sheen * reflected * (0.5 / PI) : 0.0;
 #endif
 
@@ -69,8 +74,7 @@ BsdfValue bsdf_evaluate(Lobes l, vec3 direction) {
   float nv = dot(l.specular_normal, v);
   if (nl > 0.0 && nv > 0.0 && !is_smooth(l.alpha)) {
     float lobe = ggx_reflection(l.alpha * l.alpha, l.specular_normal, h, nl, nv, pdf);
-    value.glossy = specular_color(l, lh) *
-                   (lobe * bump_shadowing(l.smooth_normal, l.specular_normal, direction));
+    value.glossy = specular_color(l, lh) * (lobe * above_horizon);
     value.pdf += l.chances.specular * reflected * pdf;
   }
 #endif
@@ -82,8 +86,7 @@ BsdfValue bsdf_evaluate(Lobes l, vec3 direction) {
     float a2 = l.coat_alpha * l.coat_alpha;
     float lobe = l.coat_alpha < 0.0 ? coat_reflection(a2, l.coat_normal, h, nl, nv, lh, pdf)
                                     : ggx_reflection(a2, l.coat_normal, h, nl, nv, pdf);
-    value.glossy += l.coat * fresnel_dielectric(lh, COAT_IOR) * lobe *
-                    bump_shadowing(l.smooth_normal, l.coat_normal, direction);
+    value.glossy += l.coat * fresnel_dielectric(lh, COAT_IOR) * lobe * above_horizon;
     value.pdf += l.chances.coat * reflected * pdf;
   }
 #endif

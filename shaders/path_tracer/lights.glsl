@@ -8,10 +8,6 @@
 
 layout(std140, binding = 3) uniform LightBlock { LightConstants light_constants; };
 
-// LightSample.source; others are primitives.
-const uint LIGHT_KNOWN = 0xffffffffu;  // the value is complete
-const uint LIGHT_WORLD = 0xfffffffeu;  // to be multiplied by the world's radiance from the direction
-
 struct LightSample {
   vec3 direction;  // unit, towards the light
   float t_max;     // where a shadow ray ends: before the light's surface, or FAR; 0: needs none

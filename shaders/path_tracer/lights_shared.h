@@ -59,6 +59,10 @@ const int MOST_LEVELS = 32;
 
 const uint NO_LIGHT = 0xffffffffu;
 
+// LightSample.source; others are primitives.
+const uint LIGHT_KNOWN = 0xffffffffu;  // the value is complete
+const uint LIGHT_WORLD = 0xfffffffeu;  // to be multiplied by the world's radiance from the direction
+
 struct LightConstants {
   uint first_glowing;     // primitive that the map to records begins with
   uint glowing_count;     // length of that map

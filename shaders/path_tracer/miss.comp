@@ -1,12 +1,15 @@
 // Paths that have met nothing: the world's light, and that of lamps before it.
 #define STATE_UNIT 7
+// What others include too comes before what may not be compiled.
+#include "base/color.glsl"
+#include "base/fresnel.glsl"
 #include "base/invocation.glsl"
-#if WORLD
-#include "gpu_scene/world.glsl"
-#endif
 #include "path_tracer/path_state.glsl"
 #include "path_tracer/light_sums.glsl"
 #include "tracing/rays_shared.h"
+#if WORLD
+#include "gpu_scene/world.glsl"
+#endif
 #if LIGHTS
 #include "path_tracer/lights.glsl"
 #endif

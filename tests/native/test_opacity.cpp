@@ -51,12 +51,13 @@ class Opacity : public ::testing::Test {
     }
     const gl::Buffer ray_buffer{std::span<const TracedRay>(rays)};
     const gl::Buffer hits(int64_t(rays.size() * sizeof(TracedHit)));
-    const gl::Buffer colours(int64_t(rays.size() * 16));
+    gl::Buffer colours(int64_t(rays.size() * 16));
+    colours.clear();
     tracing::OpacityBatch batch;
     batch.rays = &ray_buffer;
     batch.hits = &hits;
     batch.count = uint32_t(rays.size());
-    if (mode == OpacityMode::kTransmittance) batch.transmittance = &colours;
+    if (mode == OpacityMode::kTransmittance) batch.passed = &colours;
     opacity.trace(*tracer, list, gpu, batch, mode, false, programs);
     EXPECT_NO_THROW(gl::check_errors("opacity"));
     std::vector<TracedHit> result(rays.size());

@@ -111,7 +111,10 @@ class Shaders : public ::testing::Test {
             add(rasterize::raster_program(&m, {.depth_only = depth_only}));
         for (int bits = 0; bits < 16; ++bits) add(rasterize::surface_program(m, surfaces(bits)));
         add(rasterize::emitter_program(m));
-        for (bool transmittance : {false, true}) add(tracing::opacity_program(m, transmittance));
+        for (tracing::OpacityOptions opacity : {tracing::OpacityOptions{false, false},
+                                                tracing::OpacityOptions{false, true},
+                                                tracing::OpacityOptions{true, true}})
+          add(tracing::opacity_program(m, opacity));
       }
     for (const char* name : {"bin_count", "bin_offsets", "bin_scatter"})
       add(rasterize::bin_program(name));
@@ -152,7 +155,8 @@ class Shaders : public ::testing::Test {
     add(tracing::flatten_program());
     for (int bits = 0; bits < 4; ++bits) {
       add(tracing::open_rays_program(bits & 1, bits & 2));
-      add(tracing::opacity_sort_program(bits & 1, bits & 2));
+      for (bool alpha_only : {false, true})
+        add(tracing::hits_by_material_program(bits & 1, bits & 2, alpha_only));
     }
     for (const TracerEntry& entry : tracers()) {
       const auto tracer = entry.make(context->device());
