@@ -5,7 +5,7 @@ import time
 
 import bpy
 
-from . import requests, session
+from . import passes, requests, session
 from .results import LayerResult
 
 # Showing a picture that is still being rendered costs up to a third of a second.
@@ -23,6 +23,8 @@ def render(engine, depsgraph):
 
     layer = depsgraph.view_layer
     request = requests.final(depsgraph, (), warn)
+    asked = passes.enabled(layer)
+    _warn_of_black(asked, request['method'], warn)
     size = (request['width'], request['height'])
     with session.exclusive(wait=True):
         # From here on no 3D View starts another job.
@@ -33,16 +35,18 @@ def render(engine, depsgraph):
         for sentence in report.warnings:
             warn(sentence)
 
-        result = LayerResult(engine, layer.name, size)
+        result = LayerResult(engine, layer.name, size, asked)
         finished = False
         try:
-            request['passes'] = result.pass_names or ['Combined']
+            filled = {entry.name for entry in passes.filled_by(request['method'])}
+            names = [name for name in result.pass_names if name in filled]
+            request['passes'] = names or ['Combined']
             request['live'] = not bpy.app.background
             job = mirror.engine.render(request)
             cancelled = _follow(engine, job, result)
             finished = not cancelled or job.samples_ready() > 0
             if finished:
-                result.fill(job, result.pass_names)
+                result.fill(job, names)
         finally:
             result.end(cancel=not finished)
         stats = dict(job.stats())
@@ -55,6 +59,14 @@ def render(engine, depsgraph):
     session.add_stats(stats)
     megabytes = stats.get('memory_bytes', 0) / 2**20
     engine.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
+
+
+def _warn_of_black(asked, method, warn):
+    """Say which passes will stay black because the method does not fill them."""
+    filled = passes.filled_by(method)
+    black = [entry.name for entry in asked if entry not in filled]
+    if black:
+        warn(f'Real-time does not fill {", ".join(black)}; choose Primitive Tracing for such passes.')
 
 
 def _follow(engine, job, result):

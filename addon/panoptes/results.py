@@ -7,8 +7,12 @@ from . import compat, passes
 class LayerResult:
     """The render result of one view layer, begun and ended exactly once."""
 
-    def __init__(self, engine, layer_name, size):
+    def __init__(self, engine, layer_name, size, asked=()):
+        """Begin a result of `size` (width, height); `asked` are the `passes.Pass` that it shall have."""
         self._engine = engine
+        for entry in asked:
+            if entry.ours:
+                engine.add_pass(entry.name, entry.channels, entry.channel_ids, layer=layer_name)
         self._result = engine.begin_result(0, 0, *size, layer=layer_name)
         self.pass_names = [p.name for p in self._passes() if p.name in passes.BY_NAME]
 

@@ -116,9 +116,8 @@ class TestWithRecorder:
         assert stats['size'] == [32, 24] and stats['sync_ms'] > 0 and stats['total_ms'] > 0
         assert session.last_stats == stats and not session.last_error
 
-    @pytest.mark.parametrize('method', ['fragment', 'primitive'])
-    def test_method_that_does_not_work_yet(self, scene, recorder, method):
-        scene.panoptes.method = method
+    def test_method_that_does_not_work_yet(self, scene, recorder):
+        scene.panoptes.method = 'fragment'
         bpy.ops.render.render()
         assert len([w for w in session.last_stats['warnings'] if 'Real-time is used' in w]) == 1
 
@@ -185,9 +184,9 @@ class TestForReal:
         output = next(n for n in tree.nodes if n.type == 'OUTPUT_MATERIAL')
         tree.links.new(diffuse.outputs[0], output.inputs['Surface'])
         ground().data.materials.append(material)
-        passes.enable_all(scene.view_layers[0])
+        passes.enable_all(scene.view_layers[0], 'realtime')
         found = render_passes(scene, tmp_path)
-        assert set(found) == {entry.name for entry in passes.PASSES}
+        assert set(found) == {entry.name for entry in passes.filled_by('realtime')}
         assert np.allclose(found['Combined'][12, 16], (0.5, 0.25, 0.125, 1.0), rtol=2e-3)
         assert np.allclose(found['DiffCol'][12, 16], (0.5, 0.25, 0.125), rtol=2e-3)
         assert np.allclose(found['DiffDir'][12, 16], 1.0, rtol=2e-3)
