@@ -7,6 +7,7 @@ import bpy
 
 from . import passes, requests, session
 from .results import LayerResult
+from .time_left import TimeLeft, clock
 
 # Showing a picture that is still being rendered costs up to a third of a second.
 _PREVIEW_INTERVAL = 1.0
@@ -43,14 +44,17 @@ def render(engine, depsgraph):
             request['passes'] = names or ['Combined']
             request['live'] = not bpy.app.background
             job = mirror.engine.render(request)
-            cancelled = _follow(engine, job, result)
+            cancelled = _follow(engine, job, result, request['settings'])
+            # Who cancels keeps what there is.
             finished = not cancelled or job.samples_ready() > 0
             if finished:
-                result.fill(job, names)
+                result.fill(job, names, partly=cancelled)
         finally:
             result.end(cancel=not finished)
         stats = dict(job.stats())
 
+    if cancelled:
+        stats['samples'] = job.samples_ready()
     stats['sync_ms'] = report.total_ms
     stats['total_ms'] = (time.perf_counter() - started) * 1e3
     stats['warnings'] = list(dict.fromkeys(warnings + list(stats.get('warnings', ()))))
@@ -69,16 +73,18 @@ def _warn_of_black(asked, method, warn):
         warn(f'Real-time does not fill {", ".join(black)}; choose Primitive Tracing for such passes.')
 
 
-def _follow(engine, job, result):
+def _follow(engine, job, result, settings):
     """Wait for a job, telling Blender about it; return whether the artist cancelled it."""
     cancelled = False
-    shown = time.monotonic()
+    started = shown = time.monotonic()
+    time_left = TimeLeft(started)
     while not job.wait(0.05):
-        _tell(engine, job.progress(), job.status())
+        now = time.monotonic()
+        left = time_left.seconds(job.progress(), now)
+        _tell(engine, job.progress(), job.status() + _remaining(left, now - started, settings))
         if engine.test_break() and not cancelled:
             cancelled = True
             job.cancel()
-        now = time.monotonic()
         if not bpy.app.background and job.samples_ready() and now - shown > _PREVIEW_INTERVAL:
             result.show(job)
             # However long showing took, rendering gets at least as much of the processor.
@@ -86,6 +92,15 @@ def _follow(engine, job, result):
     job.finish()
     _tell(engine, job.progress(), job.status())
     return cancelled
+
+
+def _remaining(left, spent, settings):
+    """Return the words about the time left (s), or ''; limits of time and noise may shorten it."""
+    if left is None:
+        return ''
+    if 'time_budget' in settings:
+        left = min(left, max(settings['time_budget'] - spent, 0.0))
+    return f", {'at most ' if 'noise_threshold' in settings else ''}{clock(left)} left"
 
 
 def _tell(engine, fraction, text):

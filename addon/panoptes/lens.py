@@ -37,8 +37,8 @@ def of(camera, warn):
     data, dof = camera.data, camera.data.dof
     distance = _focus_distance(camera)
     if not math.isfinite(distance):
-        warn(f"What camera '{camera.name}' focuses on has no place; everything is sharp instead. Clear the transform of "
-             "its focus object or choose another.")
+        warn(f"What camera '{camera.name}' focuses on has no place; everything is sharp instead. Clear the "
+             "transform of its focus object or choose another.")
         return {}
     focal_length = 1.0 if data.type == 'ORTHO' else data.lens * 1e-3
     return {

@@ -19,11 +19,21 @@ class LayerResult:
     def _passes(self):
         return self._result.layers[0].passes if self._result.layers else ()
 
-    def fill(self, job, names):
-        """Copy the job's last complete sample to these passes."""
+    def fill(self, job, names, partly=False):
+        """Copy the job's last complete sample to these passes.
+
+        With `partly`, passes that the job has not come to stay black; otherwise that raises its error.
+        """
         for target in self._passes():
-            if target.name in names:
-                compat.write_pass(target, job.read(target.name))
+            if target.name not in names:
+                continue
+            try:
+                pixels = job.read(target.name)
+            except RuntimeError:
+                if not partly:
+                    raise
+                continue
+            compat.write_pass(target, pixels)
 
     def show(self, job):
         """Show the combined picture so far."""
