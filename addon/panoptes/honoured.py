@@ -10,8 +10,10 @@ them. Panels of EEVEE or Cycles belong to those engines and are left to them, ex
 
 import bpy
 
-# Panels of EEVEE whose every setting counts here.
+# Panels of EEVEE whose every setting counts here; lenses have theirs with EEVEE and Workbench.
 _BORROWED = {
+    'DATA_PT_camera_dof',
+    'DATA_PT_camera_dof_aperture',
     'EEVEE_MATERIAL_PT_context_material',
     'EEVEE_MATERIAL_PT_surface',
     'EEVEE_WORLD_PT_surface',

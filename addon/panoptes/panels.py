@@ -6,7 +6,7 @@ import textwrap
 
 import bpy
 
-from . import passes, session
+from . import passes, requests, session
 
 ENGINE = 'PANOPTES'
 
@@ -50,6 +50,7 @@ class PANOPTES_PT_sampling(EnginePanel, bpy.types.Panel):
         """Draw the panel."""
         settings = context.scene.panoptes
         column = self._column()
+        column.prop(settings, 'method')
         column.prop(settings, 'samples', text='Render Samples')
         column.prop(settings, 'viewport_samples')
 
@@ -84,17 +85,87 @@ class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
         settings = context.scene.panoptes
         column = self._column()
         column.prop(settings, 'debug_picture')
-        if settings.debug_picture != 'none':
-            column.prop(settings.primitive, 'structure')
-            if settings.primitive.structure in {'orthographic', 'cube', 'lists'}:
-                column.prop(settings.primitive, 'tiles')
-                column.prop(settings.primitive, 'buckets')
+        if settings.debug_picture != 'none' and not _traces_paths(context):
+            _draw_structure(column, settings.primitive)
+
+
+def _traces_paths(context):
+    return requests.method(context.scene.panoptes) == 'primitive'
+
+
+def _draw_structure(column, settings):
+    column.prop(settings, 'structure')
+    if settings.structure in {'orthographic', 'cube', 'lists'}:
+        column.prop(settings, 'tiles')
+        column.prop(settings, 'buckets')
+
+
+class _PathPanel(EnginePanel):
+    """Common part of panels that count for paths of light only."""
+
+    @classmethod
+    def poll(cls, context):
+        """Show the panel where paths are traced."""
+        return super().poll(context) and _traces_paths(context)
+
+
+class PANOPTES_PT_light_paths(_PathPanel, bpy.types.Panel):
+    """How far light is followed."""
+
+    bl_label = 'Light Paths'
+
+    def draw(self, context):
+        """Draw the panel."""
+        self._column().prop(context.scene.panoptes, 'bounces')
+
+
+class PANOPTES_PT_light_path_kinds(_PathPanel, bpy.types.Panel):
+    """Limits for each kind of bounce."""
+
+    bl_label = 'Limits by Kind'
+    bl_parent_id = 'PANOPTES_PT_light_paths'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        """Draw the panel."""
+        column = self._column()
+        for kind in ('diffuse', 'glossy', 'transmission', 'transparent'):
+            column.prop(context.scene.panoptes.primitive, f'{kind}_bounces')
+
+
+class PANOPTES_PT_clamping(_PathPanel, bpy.types.Panel):
+    """What is given up for less noise."""
+
+    bl_label = 'Noise Reduction'
+    bl_parent_id = 'PANOPTES_PT_light_paths'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        """Draw the panel."""
+        column = self._column()
+        for name in ('clamp_direct', 'clamp_indirect', 'filter_glossy'):
+            column.prop(context.scene.panoptes.primitive, name)
+
+
+class PANOPTES_PT_rays(_PathPanel, bpy.types.Panel):
+    """How rays find what they meet."""
+
+    bl_label = 'Rays'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        """Draw the panel."""
+        settings = context.scene.panoptes.primitive
+        column = self._column()
+        column.prop(settings, 'primary')
+        column.prop(settings, 'shadows')
+        _draw_structure(column, settings)
 
 
 class PANOPTES_PT_shadows(EnginePanel, bpy.types.Panel):
-    """Shadow maps of the Real-time method."""
+    """Shadow maps: of Real-time, which 3D Views begin with, and of paths that use maps."""
 
-    bl_label = 'Shadows'
+    bl_label = 'Shadow Maps'
 
     def draw(self, context):
         """Draw the panel."""
@@ -190,10 +261,11 @@ class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
     def draw(self, context):
         """Draw the panel."""
         column = self._column()
-        for entry in passes.PASSES:
+        for entry in passes.filled_by(requests.method(context.scene.panoptes)):
             if entry.switch:
-                column.prop(context.view_layer, entry.switch)
+                column.prop(*entry.owner(context.view_layer))
 
 
 CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_debug,
+           PANOPTES_PT_light_paths, PANOPTES_PT_light_path_kinds, PANOPTES_PT_clamping, PANOPTES_PT_rays,
            PANOPTES_PT_shadows, PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`scene.panoptes`: every option of a render, grouped by technique."""
+"""`scene.panoptes`: every option of a render, grouped by technique; `view_layer.panoptes`: more passes."""
 
 import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
@@ -32,9 +32,62 @@ class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
         default='AUTO')
 
 
+def _bounces(kind, what):
+    """Return a limit for one kind of bounce.
+
+    By default it is out of the way: the limit that counts is that of all bounces, which an artist can
+    raise without looking for others. Lower ones make pictures darker, not only faster; dim paths end
+    early by themselves.
+    """
+    return IntProperty(
+        name=kind, description=f'How often light is {what} at most, where this is less than Bounces',
+        default=1024, min=0, max=1024)
+
+
 class PanoptesPrimitiveSettings(bpy.types.PropertyGroup):
     """Options of rays through triangles: the Primitive method and pictures of rays at work."""
 
+    diffuse_bounces: _bounces('Diffuse', 'scattered by matt surfaces')
+    glossy_bounces: _bounces('Glossy', 'reflected by shiny surfaces')
+    transmission_bounces: _bounces('Transmission', 'refracted by glass')
+    # Leaves stand in the way one behind the other, and where the limit is met they turn black.
+    transparent_bounces: IntProperty(
+        name='Transparent',
+        description='Layers with transparency that light passes straight on. Behind so many it is dark. They do '
+                    'not count as other bounces',
+        default=16, min=0, max=1024)
+    clamp_direct: FloatProperty(
+        name='Clamp Direct',
+        description='Most light that a sample may get from lamps and glowing things in one bounce. Lowers noise '
+                    'and darkens highlights. 0 takes all of it',
+        default=0.0, min=0.0, max=1e8, precision=2)
+    clamp_indirect: FloatProperty(
+        name='Clamp Indirect',
+        description='Most light that a sample may get after several bounces. Lowers noise and darkens what is '
+                    'seen by it. 0 takes all of it',
+        default=0.0, min=0.0, max=1e8, precision=2)
+    filter_glossy: FloatProperty(
+        name='Filter Glossy',
+        description='Blurs reflections that are seen by rough surfaces, where they would only be sparkles. 0 '
+                    'keeps all of them sharp',
+        default=1.0, min=0.0, max=10.0)
+    shadows: EnumProperty(
+        name='Lamp Shadows',
+        description='How it is found what stands between a lamp and a surface',
+        items=(
+            ('RAYS', 'Rays', 'Exact'),
+            ('MAPS', 'Shadow Maps', 'Faster where there are few lamps; as sharp as the maps are'),
+        ),
+        default='RAYS')
+    primary: EnumProperty(
+        name='Camera Rays',
+        description='How it is found what the camera sees',
+        items=(
+            ('TRACED', 'Traced', 'Each sample looks through another place of each pixel and of the lens'),
+            ('RASTERISED', 'Rasterised', 'Faster in scenes with few triangles. Each sample looks through the '
+                                         'same place of all pixels, and everything is sharp'),
+        ),
+        default='TRACED')
     structure: EnumProperty(
         name='Structure',
         description='How rays find the triangles that they meet. The picture is the same with each, the '
@@ -73,8 +126,8 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
                                       'animation previews'),
             ('fragment', 'Fragment Tracing', 'Path tracing over rasterised layers. Does not work '
                                              'yet: Real-time is used'),
-            ('primitive', 'Primitive Tracing', 'Path tracing with exact intersections. Does not '
-                                               'work yet: Real-time is used'),
+            ('primitive', 'Primitive Tracing', 'Path tracing with exact intersections: light after any '
+                                               'number of bounces'),
         ),
         default='auto')
     samples: IntProperty(
@@ -90,8 +143,8 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
     seed: IntProperty(
         name='Seed', description='Another seed gives another pattern of noise', default=0, min=0)
     bounces: IntProperty(
-        name='Bounces', description='How often light is reflected on its way. Used by indirect '
-                                    'light', default=8, min=0, max=1024)
+        name='Bounces', description='How often light is scattered on its way, by surfaces of all kinds',
+        default=8, min=0, max=1024)
     noise_threshold: FloatProperty(
         name='Noise Threshold',
         description='Stop when the estimated relative error falls below this. 0 renders all samples',
@@ -129,18 +182,28 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
         options={'HIDDEN', 'SKIP_SAVE'})
 
 
-_CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, PanoptesSceneSettings)
+class PanoptesViewLayerSettings(bpy.types.PropertyGroup):
+    """Options of a view layer that Blender has no place for."""
+
+    use_pass_sample_count: BoolProperty(
+        name='Sample Count', description='Deliver how many samples each pixel has got', default=False)
+
+
+_CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, PanoptesSceneSettings,
+            PanoptesViewLayerSettings)
 
 
 def register():
-    """Add `panoptes` to all scenes."""
+    """Add `panoptes` to all scenes and view layers."""
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Scene.panoptes = PointerProperty(type=PanoptesSceneSettings)
+    bpy.types.ViewLayer.panoptes = PointerProperty(type=PanoptesViewLayerSettings)
 
 
 def unregister():
-    """Remove `panoptes` from all scenes."""
+    """Remove `panoptes` from all scenes and view layers."""
+    del bpy.types.ViewLayer.panoptes
     del bpy.types.Scene.panoptes
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

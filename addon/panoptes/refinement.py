@@ -32,12 +32,20 @@ class Refinement:
         return self._last - self._first
 
     def is_complete(self):
-        """Tell whether all samples are there."""
-        return self.samples >= self.wanted
+        """Tell whether all samples are there, and the job has said all that it has to say."""
+        return self._job is None and self.samples >= self.wanted
 
     def is_running(self):
         """Tell whether a job works on it."""
         return self._job is not None and not self._job.wait(0.0)
+
+    def is_unread(self):
+        """Tell whether the job that works on it may not have read its scene: it has no sample yet."""
+        return self.is_running() and not self._job.samples_ready()
+
+    def is_ready(self):
+        """Tell whether the next job may start."""
+        return True
 
     def seconds_running(self):
         """Return for how long the job has been working."""
@@ -102,6 +110,8 @@ class Refinement:
 
     def status(self):
         """Return what happens now, in a few words."""
+        if self.is_complete():
+            return f'{self.samples} samples'
         if self._job is not None and not self.samples:
             return self._job.status().capitalize()
         return f'Sample {self.samples}/{self.wanted}'
@@ -133,10 +143,10 @@ class Turns:
             self._running = [r for r in self._running if r is not refinement] + [refinement]
         return True
 
-    def interrupt_unborn(self):
-        """Interrupt jobs without a sample: they may not have read their scene, which will change."""
+    def interrupt_unread(self):
+        """Interrupt jobs that may not have read their scene, which will change."""
         for other in self._others(None):
-            if not other.samples:
+            if other.is_unread():
                 other.interrupt()
 
     def cancel_all(self):

@@ -3,22 +3,21 @@
 
 import numpy as np
 
+from . import lens
+
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
 # Of the native engine.
 _WIDEST_FILTER = 10.0
-_METHOD_NAMES = {'fragment': 'Fragment tracing', 'primitive': 'Primitive tracing'}
 
 
 class BadRequest(RuntimeError):
     """The scene asks for something that cannot be rendered; the text says what and the remedy."""
 
 
-def method(settings, warn):
-    """Return the method to use; a method that does not work yet is replaced, with a warning."""
-    if settings.method in _METHOD_NAMES:
-        warn(f'{_METHOD_NAMES[settings.method]} does not work yet; Real-time is used instead.')
-    return 'realtime'
+def method(settings):
+    """Return the method that is used for what `scene.panoptes.method` asks: 'realtime' or 'primitive'."""
+    return 'primitive' if settings.method == 'primitive' else 'realtime'
 
 
 def _inverted(matrix):
@@ -33,15 +32,40 @@ def _inverted(matrix):
         return matrix
 
 
-def _settings(scene):
+def _path_settings(scene):
+    """Return the settings of paths: limits, and how their rays find what they meet."""
+    settings, paths = scene.panoptes, scene.panoptes.primitive
+    found = {
+        'bounces': settings.bounces,
+        'clamp_direct': paths.clamp_direct,
+        'clamp_indirect': paths.clamp_indirect,
+        'filter_glossy': paths.filter_glossy,
+        'shadow_maps': paths.shadows == 'MAPS',
+        'raster_primary': paths.primary == 'RASTERISED',
+        **_structure_settings(paths),
+    }
+    for kind in ('diffuse', 'glossy', 'transmission', 'transparent'):
+        found[f'{kind}_bounces'] = getattr(paths, f'{kind}_bounces')
+    if scene.world is not None:
+        found['ao_distance'] = scene.world.light_settings.distance
+    return found
+
+
+def _structure_settings(paths):
+    return {name: getattr(paths, name) for name in ('structure', 'tiles', 'buckets')}
+
+
+def _settings(scene, used):
+    """Return the settings that count for a method ('realtime' or 'primitive')."""
     settings = scene.panoptes
     found = {
         'shadow_resolution': settings.realtime.shadow_resolution,
         'soft_shadows': settings.realtime.soft_shadows,
         'filter_penumbrae': settings.realtime.penumbrae == 'FILTERED',
-        'bounces': settings.bounces,
         'film_transparent': scene.render.film_transparent,
     }
+    if used == 'primitive':
+        found.update(_path_settings(scene))
     # 0 switches a limit off.
     if settings.time_budget > 0.0:
         found['time_budget'] = settings.time_budget
@@ -49,8 +73,7 @@ def _settings(scene):
         found['noise_threshold'] = settings.noise_threshold
     if settings.debug_picture != 'none':
         found['debug_picture'] = settings.debug_picture
-        found['structure'] = settings.primitive.structure
-        found['tiles'], found['buckets'] = settings.primitive.tiles, settings.primitive.buckets
+        found.update(_structure_settings(settings.primitive))
     return found
 
 
@@ -62,11 +85,12 @@ def _filter_width(render, warn):
     return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
 
 
-def build(scene, size, samples, view, projection, passes, warn):
+def build(scene, size, samples, view, projection, passes, warn, camera=None):
     """Return a request.
 
     `size` is (width, height) in pixels, `samples` (first, last exclusive), `view` world to camera
-    and `projection` camera to clip space, both 4x4 matrices; `passes` are names.
+    and `projection` camera to clip space, both 4x4 matrices; `passes` are names. `camera` is the
+    evaluated camera through whose lens the picture is seen, or None: then everything is sharp.
     """
     width, height = size
     if width < 1 or height < 1:
@@ -76,7 +100,10 @@ def build(scene, size, samples, view, projection, passes, warn):
     if not (np.isfinite(view).all() and np.isfinite(projection).all()):
         raise BadRequest("The camera's place or lens is not a number; clear its transform or choose "
                          'another camera.')
-    settings = _settings(scene)
+    used = method(scene.panoptes)
+    if scene.panoptes.method == 'fragment':
+        warn('Fragment tracing does not work yet; Real-time is used instead.')
+    settings = _settings(scene, used)
     if 'debug_picture' in settings:
         # It looks through the pixels' centres: another sample would be the same.
         samples = (0, 1)
@@ -88,12 +115,24 @@ def build(scene, size, samples, view, projection, passes, warn):
         'view': view,
         'projection': projection,
         'passes': list(passes),
-        'method': method(scene.panoptes, warn),
+        'method': used,
+        'lens': {} if camera is None else _lens(camera, scene.panoptes, warn),
         'filter_width': _filter_width(scene.render, warn),
         'exposure': scene.panoptes.exposure,
         'force_all_effects': scene.panoptes.force_all_effects,
         'settings': settings,
     }
+
+
+def _lens(camera, settings, warn):
+    """Return the `lens` of a request; {} where everything is sharp."""
+    if not lens.is_used(camera):
+        return {}
+    if method(settings) != 'primitive' or settings.primitive.primary == 'RASTERISED':
+        warn(f"Camera '{camera.name}' has depth of field, which rasterised pictures do not show; everything is "
+             'sharp instead. Choose Primitive Tracing and traced camera rays to see it.')
+        return {}
+    return lens.of(camera, warn)
 
 
 def _region(render, width, height):
@@ -162,9 +201,6 @@ def final(depsgraph, passes, warn):
     if camera.type == 'CAMERA' and camera.data.type == 'PANO':
         warn(f"Camera '{camera.name}' is panoramic, which is not supported yet; a perspective view "
              'is used instead.')
-    if camera.type == 'CAMERA' and camera.data.dof.use_dof:
-        warn(f"Camera '{camera.name}' has depth of field, which is not supported yet; everything is "
-             'sharp.')
     if render.use_multiview:
         warn('Stereoscopy is not supported yet; the view of the camera itself is rendered.')
     region = _region(render, width, height)
@@ -172,7 +208,15 @@ def final(depsgraph, passes, warn):
     settings = scene.panoptes
     samples = (settings.first_sample, settings.first_sample + settings.samples)
     return build(scene, (region[2] - region[0], region[3] - region[1]), samples, view,
-                 _cropped(projection, region, width, height), passes, warn)
+                 _cropped(projection, region, width, height), passes, warn, camera)
+
+
+def _looked_through(depsgraph, space, region_data):
+    """Return the evaluated camera that a 3D View looks through, or None."""
+    if region_data.view_perspective != 'CAMERA':
+        return None
+    camera = space.camera if space.use_local_camera else depsgraph.scene.camera
+    return None if camera is None else camera.evaluated_get(depsgraph)
 
 
 def _camera_frame(scene, space, region, region_data):
@@ -222,7 +266,7 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
     projection = _cropped(np.array(region_data.window_matrix, np.float64), rectangle, region.width,
                           region.height)
     request = build(scene, size, (0, scene.panoptes.viewport_samples), region_data.view_matrix,
-                    projection, ['Combined'], warn)
+                    projection, ['Combined'], warn, _looked_through(depsgraph, space, region_data))
     # The picture is shown while it refines.
     request['live'] = True
     request['settings']['filter_penumbrae'] = scene.panoptes.realtime.penumbrae != 'SAMPLED'

@@ -28,10 +28,18 @@ def take_over(scene):
     ours.time_budget = cycles.time_limit
     ours.seed = cycles.seed
     ours.bounces = cycles.max_bounces
+    for kind in ('diffuse', 'glossy', 'transmission'):
+        setattr(ours.primitive, f'{kind}_bounces', getattr(cycles, f'{kind}_bounces'))
+    ours.primitive.transparent_bounces = cycles.transparent_max_bounces
+    ours.primitive.clamp_direct = cycles.sample_clamp_direct
+    ours.primitive.clamp_indirect = cycles.sample_clamp_indirect
+    ours.primitive.filter_glossy = cycles.blur_glossy
     ours.exposure = cycles.film_exposure
     scene.render.filter_size = cycles.filter_width
-    taken = ['samples', 'viewport samples', 'noise threshold', 'time limit', 'seed', 'bounces',
-             'exposure', 'pixel filter width']
+    for layer in scene.view_layers:
+        layer.panoptes.use_pass_sample_count = layer.cycles.pass_debug_sample_count
+    taken = ['samples', 'viewport samples', 'noise threshold', 'time limit', 'seed', 'bounces', 'clamping',
+             'filter glossy', 'exposure', 'pixel filter width']
     # Transparent film is one switch of Blender's for both engines.
     return taken, list(_without_counterpart(scene, cycles))
 
@@ -40,14 +48,6 @@ def _without_counterpart(scene, cycles):
     """Yield names of settings that would change Cycles' picture, and which we do not have."""
     if cycles.pixel_filter_type != 'BLACKMAN_HARRIS':
         yield f'{cycles.pixel_filter_type.title()} filter (Blackman-Harris is used)'
-    for kind in ('diffuse', 'glossy', 'transmission'):
-        # A limit of its own matters where the total would allow more.
-        if getattr(cycles, f'{kind}_bounces') < cycles.max_bounces:
-            yield f'{kind} bounces'
-    if cycles.sample_clamp_direct > 0.0 or cycles.sample_clamp_indirect > 0.0:
-        yield 'clamping'
-    if cycles.blur_glossy > 0.0:
-        yield 'filter glossy'
     if not (cycles.caustics_reflective and cycles.caustics_refractive):
         yield 'no caustics'
     if cycles.use_denoising:
@@ -63,7 +63,7 @@ def _without_counterpart(scene, cycles):
 
 
 class PANOPTES_OT_take_over_cycles(bpy.types.Operator):
-    """Copy samples, limits, bounces, exposure and pixel filter from this scene's settings for Cycles"""
+    """Copy samples, limits, bounces, clamping, exposure and pixel filter from this scene's settings for Cycles"""
 
     bl_idname = 'panoptes.take_over_cycles'
     bl_label = "Take over Cycles' Settings"

@@ -9,8 +9,7 @@ view turns.
 
 import bpy
 
-from . import compat, requests, session
-from .refinement import Refinement
+from . import changeover, compat, requests, session
 from .sync import SceneSync
 
 # Seconds that `draw` waits for the first sample of a new view.
@@ -74,7 +73,7 @@ class Viewport:
         space, mirror = _space(context), session.mirror()
         sync = _sync_for(depsgraph, space)
         if mirror.owner is not sync:
-            session.turns.interrupt_unborn()
+            session.turns.interrupt_unread()
         incremental, self._synced = self._synced, False
         report = sync.sync(mirror, depsgraph, space, incremental)
         self._synced, self._state = True, mirror.state()
@@ -130,13 +129,13 @@ class Viewport:
             if not last.samples and last.seconds_running() < _GRACE:
                 return
             last.interrupt()
-        self._picture = Refinement(request, _key(request, self._state))
+        self._picture = changeover.picture(request, _key(request, self._state))
         self._rectangle_ahead = rectangle
 
     def _start(self, context, depsgraph):
         """Start the picture's job if it is this view's turn."""
         picture, mirror = self._picture, session.mirror()
-        if not session.turns.take(picture):
+        if not picture.is_ready() or not session.turns.take(picture):
             return
         if mirror.owner is not _sync_for(depsgraph, _space(context)):
             # Another view or a final render has written its own version of the scene.
@@ -155,12 +154,9 @@ class Viewport:
 
     def _status(self):
         picture = self._picture
-        if picture.is_complete():
-            text = f'{picture.samples} samples'
-        elif picture.is_running():
-            text = picture.status()
-        else:
-            text = f'{picture.status()}, waiting for another 3D View'
+        text = picture.status()
+        if not (picture.is_complete() or picture.is_running()) and picture.is_ready():
+            text += ', waiting for another 3D View'
         warnings = self.warnings()
         if not warnings:
             return text
@@ -179,7 +175,8 @@ class Viewport:
     def has_news(self):
         """Tell whether a redraw would show or start something."""
         picture = self._picture
-        return picture.has_news() or not picture.is_running() and session.turns.is_free(picture)
+        idle = not picture.is_running() and picture.is_ready()
+        return picture.has_news() or idle and session.turns.is_free(picture)
 
     def _draw_last(self):
         if self._pixels is not None:

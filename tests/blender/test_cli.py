@@ -176,7 +176,7 @@ class TestRenders:
         assert 1 <= json.loads((tmp_path / 'out.json').read_text())['samples'] <= 3
 
     def test_method_that_does_not_work_yet(self, make, tmp_path):
-        status, lines, _ = run('render', make(), '-o', tmp_path / 'out.png', '--method', 'primitive')
+        status, lines, _ = run('render', make(), '-o', tmp_path / 'out.png', '--method', 'fragment')
         assert status == 0 and len(lines) == 1 and 'Real-time is used instead' in lines[0]
 
     def test_missing_texture(self, scene, make, tmp_path):

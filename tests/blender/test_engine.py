@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from panoptes import compat, native, passes, requests, session
+from panoptes import compat, final, native, passes, requests, session
+from panoptes.time_left import TimeLeft, clock
+from recorder import Job
 
 
 def lamp(kind='SUN', energy=1.0, location=(0, 0, 5)):
@@ -116,11 +118,50 @@ class TestWithRecorder:
         assert stats['size'] == [32, 24] and stats['sync_ms'] > 0 and stats['total_ms'] > 0
         assert session.last_stats == stats and not session.last_error
 
-    @pytest.mark.parametrize('method', ['fragment', 'primitive'])
-    def test_method_that_does_not_work_yet(self, scene, recorder, method):
-        scene.panoptes.method = method
+    def test_method_that_does_not_work_yet(self, scene, recorder):
+        scene.panoptes.method = 'fragment'
         bpy.ops.render.render()
         assert len([w for w in session.last_stats['warnings'] if 'Real-time is used' in w]) == 1
+
+    def test_cancelled_renders_keep_what_there_is(self, scene, recorder, monkeypatch, tmp_path):
+        """Passes that the job has not come to stay black."""
+        scene.view_layers[0].use_pass_normal = True
+
+        def read(job, name):
+            if name != 'Combined':
+                raise RuntimeError(f"pass '{name}' is not there yet")
+            return np.full((24, 32, 4), 0.25, np.float32)
+
+        monkeypatch.setattr(Job, 'read', read)
+        monkeypatch.setattr(final, '_follow', lambda *arguments: True)
+        found = render_passes(scene, tmp_path)
+        assert (found['Combined'] == 0.25).all() and not found['Normal'].any()
+        assert not session.last_error
+        monkeypatch.setattr(final, '_follow', lambda *arguments: False)
+        with pytest.raises(RuntimeError, match='not there yet'):
+            bpy.ops.render.render()
+
+    def test_time_left(self, scene, recorder, monkeypatch):
+        told = []
+        monkeypatch.setattr(session, 'progress_listener', lambda fraction, text: told.append(text))
+        steps = iter((0.0, 0.25, 0.5))
+        now = [100.0]
+
+        def wait(job, seconds):
+            job.share = next(steps, None)
+            now[0] += 10.0
+            return job.share is None
+
+        monkeypatch.setattr(Job, 'wait', wait)
+        monkeypatch.setattr(Job, 'progress', lambda job: job.share or 0.0)
+        monkeypatch.setattr(final.time, 'monotonic', lambda: now[0])
+        bpy.ops.render.render()
+        assert told[1:4] == ['Finished', 'Finished, 1:00 left', 'Finished, 0:20 left']
+        scene.panoptes.time_budget, scene.panoptes.noise_threshold = 35.0, 0.1
+        steps = iter((0.25, 0.5))
+        told.clear()
+        bpy.ops.render.render()
+        assert told[1:3] == ['Finished, at most 0:25 left', 'Finished, at most 0:15 left']
 
     def test_view_layers(self, scene, recorder):
         scene.view_layers.new('Second')
@@ -185,9 +226,9 @@ class TestForReal:
         output = next(n for n in tree.nodes if n.type == 'OUTPUT_MATERIAL')
         tree.links.new(diffuse.outputs[0], output.inputs['Surface'])
         ground().data.materials.append(material)
-        passes.enable_all(scene.view_layers[0])
+        passes.enable_all(scene.view_layers[0], 'realtime')
         found = render_passes(scene, tmp_path)
-        assert set(found) == {entry.name for entry in passes.PASSES}
+        assert set(found) == {entry.name for entry in passes.filled_by('realtime')}
         assert np.allclose(found['Combined'][12, 16], (0.5, 0.25, 0.125, 1.0), rtol=2e-3)
         assert np.allclose(found['DiffCol'][12, 16], (0.5, 0.25, 0.125), rtol=2e-3)
         assert np.allclose(found['DiffDir'][12, 16], 1.0, rtol=2e-3)
@@ -298,3 +339,16 @@ def test_penumbrae_are_sampled_in_final_renders_and_filtered_in_views(scene):
     assert filtered('AUTO') == [False, True]
     assert filtered('SAMPLED') == [False, False]
     assert filtered('FILTERED') == [True, True]
+
+
+def test_pace_of_the_time_left():
+    left = TimeLeft(started=0.0)
+    assert left.seconds(0.0, 5.0) is None
+    # The first of ten samples has waited for compiling.
+    assert left.seconds(0.1, 20.0) == pytest.approx(180.0)
+    assert left.seconds(0.1, 21.0) == pytest.approx(179.0)
+    # Then each takes 2 s.
+    assert left.seconds(0.2, 22.0) == pytest.approx(16.0)
+    assert left.seconds(0.5, 28.0) == pytest.approx(10.0)
+    assert left.seconds(0.5, 99.0) == 0.0 and left.seconds(1.0, 100.0) == 0.0
+    assert [clock(seconds) for seconds in (0.4, 61.0, 3661.0)] == ['0:00', '1:01', '1:01:01']

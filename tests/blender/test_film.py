@@ -148,7 +148,7 @@ def test_exposure_scales_light_as_in_cycles(scene, native_module, tmp_path, shin
     build(scene, shine)
     # Glowing things take long, and the mean of a picture needs few samples.
     scene.panoptes.samples, scene.panoptes.realtime.shadow_resolution = 32, 64
-    passes.enable_all(scene.view_layers[0])
+    passes.enable_all(scene.view_layers[0], 'realtime')
 
     def render():
         return render_passes(scene, tmp_path)

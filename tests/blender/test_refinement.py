@@ -6,15 +6,20 @@ import numpy as np
 import pytest
 
 from building import Sync, add_object, quad
+from panoptes import changeover
 from panoptes.refinement import Refinement, Turns
 from recorder import Recorder
 
 
 class SlowJob:
-    """A job whose samples come when the test says so; sample k is a picture of the number k."""
+    """A job whose samples come when the test says so; sample k is a picture of the number k.
+
+    Real-time's pictures are 100 less.
+    """
 
     def __init__(self, request):
         self.first, self.last = request['samples']
+        self.method = request.get('method')
         self.done = 0
         self.stopped = False
 
@@ -26,7 +31,7 @@ class SlowJob:
 
     def read(self, name):
         mean = np.arange(self.first, self.first + self.done).mean()
-        return np.full((2, 3, 4), mean, np.float32)
+        return np.full((2, 3, 4), mean - 100.0 if self.method == 'realtime' else mean, np.float32)
 
     def cancel(self):
         self.stopped = True
@@ -102,6 +107,77 @@ class TestRefinement:
         assert found.samples == 2 and not found.is_running() and not found.is_complete()
 
 
+class TestChangeover:
+    """Real-time first, then paths."""
+
+    @pytest.fixture
+    def found(self, monkeypatch):
+        monkeypatch.setattr(changeover, 'REST', 0.0)
+        return changeover.picture({'samples': (0, 40), 'method': 'primitive', 'settings': {}}, 'key')
+
+    @staticmethod
+    def go(found, job, done):
+        job.done = done
+        assert found.has_news()
+        found.advance()
+
+    def test_methods_and_samples(self, engine, found):
+        found.start(engine)
+        assert not found.samples and found.status() == 'Compiling'
+        self.go(found, engine.jobs[0], changeover.QUICK_SAMPLES)
+        assert not found.is_running() and not found.is_complete() and found.is_ready()
+        found.start(engine)
+        assert found.is_unread() and found.status() == 'Paths: compiling'
+        self.go(found, engine.jobs[1], 40)
+        assert found.is_complete() and found.status() == 'Paths: 40 samples'
+        assert [(job.method, job.first, job.last) for job in engine.jobs] == [
+            ('realtime', 0, changeover.QUICK_SAMPLES), ('primitive', 0, 40)]
+        assert found.warnings == ('A warning.',)
+
+    def test_nothing_jumps(self, engine, found):
+        found.start(engine)
+        self.go(found, engine.jobs[0], changeover.QUICK_SAMPLES)
+        quick = found.pixels[0, 0, 0]
+        found.start(engine)
+        shown = []
+        for done in range(1, 41):
+            self.go(found, engine.jobs[1], done)
+            paths = np.arange(done).mean()
+            shown.append(float((found.pixels[0, 0, 0] - quick) / (paths - quick)))
+        # From one sample to the next a tenth of the way at most, and never back.
+        assert all(-1e-6 <= after - before < 0.1 for before, after in zip(shown, shown[1:]))
+        assert shown[changeover.HIDDEN_SAMPLES - 1] == 0.0 and shown[changeover.SHOWN_SAMPLES - 1] == 1.0
+
+    def test_a_finished_picture_is_of_paths_alone(self):
+        assert changeover.weight(2, 2) == 1.0 and changeover.weight(2, 3) == 0.0
+
+    def test_interrupted_and_going_on(self, engine, found):
+        found.start(engine)
+        engine.jobs[0].done = 2
+        found.interrupt()
+        assert found.samples == 2 and found.pixels is not None
+        found.start(engine)
+        self.go(found, engine.jobs[1], changeover.QUICK_SAMPLES - 2)
+        found.start(engine)
+        engine.jobs[2].done = 30
+        found.interrupt()
+        found.start(engine)
+        self.go(found, engine.jobs[3], 10)
+        assert found.is_complete() and found.pixels == pytest.approx(19.5)
+
+    def test_paths_wait_until_the_view_rests(self, engine):
+        found = changeover.picture({'samples': (0, 4), 'method': 'primitive', 'settings': {}}, 'key')
+        assert found.is_ready()
+        found.start(engine)
+        self.go(found, engine.jobs[0], changeover.QUICK_SAMPLES)
+        assert not found.is_ready() and found.samples
+
+    @pytest.mark.parametrize('method, settings', [('realtime', {}), ('primitive', {'debug_picture': 'steps'})])
+    def test_what_has_one_stage(self, method, settings):
+        request = {'samples': (0, 4), 'method': method, 'settings': settings}
+        assert isinstance(changeover.picture(request, 'key'), Refinement)
+
+
 class TestTurns:
     def start(self, turns, engine, found):
         assert turns.take(found)
@@ -131,16 +207,21 @@ class TestTurns:
         self.start(turns, engine, one)
         assert engine.jobs[2].first == 1
 
-    def test_a_scene_that_changes_under_an_unborn_job(self, engine):
+    def test_a_scene_that_changes_before_a_job_has_read_it(self, engine):
         turns, one = Turns(), picture()
         self.start(turns, engine, one)
-        turns.interrupt_unborn()
+        turns.interrupt_unread()
         assert engine.jobs[0].stopped
         self.start(turns, engine, one)
         engine.jobs[1].done = 1
         one.advance()
-        turns.interrupt_unborn()
+        turns.interrupt_unread()
         assert not engine.jobs[1].stopped
+        # A picture that goes on has samples, but its new job has not read the scene.
+        one.interrupt()
+        self.start(turns, engine, one)
+        turns.interrupt_unread()
+        assert engine.jobs[2].stopped and one.samples == 1
 
     def test_all_stop_for_a_final_render(self, engine):
         turns, one = Turns(), picture()

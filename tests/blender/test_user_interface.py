@@ -76,7 +76,7 @@ class TestBlendersPanels:
     """Which of Blender's own panels appear."""
 
     @pytest.mark.parametrize('name', [
-        'DATA_PT_lens', 'DATA_PT_camera', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface',
+        'DATA_PT_lens', 'DATA_PT_camera', 'DATA_PT_camera_dof_aperture', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface',
         'RENDER_PT_format', 'RENDER_PT_color_management', 'RENDER_PT_simplify', 'PHYSICS_PT_cloth',
         'PARTICLE_PT_emission', 'DATA_PT_uv_texture', 'MATERIAL_PT_preview',
         'TEXTURE_PT_context', 'RENDER_PT_freestyle', 'VIEWLAYER_PT_layer'])
@@ -84,7 +84,7 @@ class TestBlendersPanels:
         assert name in honoured_names()
 
     @pytest.mark.parametrize('pattern', [
-        r'CYCLES_', r'RENDER_PT_(eevee|opengl)', r'DATA_PT_camera_dof', r'DATA_PT_EEVEE',
+        r'CYCLES_', r'RENDER_PT_(eevee|opengl)', r'DATA_PT_EEVEE',
         r'EEVEE_WORLD_PT_(?!surface)', r'EEVEE_(NEXT_)?MATERIAL_PT_(volume|displacement|settings)',
         r'stereo', r'lightprobe_', r'layer_passes', r'DATA_PT_area$', r'OBJECT_PT_(shading|visibility)'])
     def test_what_does_not_count_is_not_offered(self, pattern):
@@ -157,6 +157,24 @@ class TestOurPanels:
         assert 'use_pass_z' in draw('PANOPTES_PT_passes')
         assert draw('PANOPTES_PT_take_over') == ['panoptes.take_over_cycles']
 
+    def test_what_counts_for_paths_only(self, scene):
+        context = types.SimpleNamespace(engine='PANOPTES', scene=scene)
+        ours = [getattr(bpy.types, f'PANOPTES_PT_{name}')
+                for name in ('light_paths', 'light_path_kinds', 'clamping', 'rays')]
+        assert not any(panel.poll(context) for panel in ours)
+        assert 'use_pass_ambient_occlusion' not in draw('PANOPTES_PT_passes')
+        scene.panoptes.debug_picture = 'steps'
+        assert 'structure' in draw('PANOPTES_PT_debug')
+        scene.panoptes.method = 'primitive'
+        drawn = [name for panel in ours for name in draw(panel.__name__)]
+        settings = {p.identifier for p in scene.panoptes.primitive.bl_rna.properties} - {'rna_type', 'name'}
+        # Every setting of paths is offered, once; those of a structure where it is one with tiles.
+        assert sorted(drawn) == sorted(settings - {'tiles', 'buckets'} | {'bounces'})
+        assert draw('PANOPTES_PT_debug') == ['debug_picture']
+        scene.panoptes.primitive.structure = 'cube'
+        assert 'tiles' in draw('PANOPTES_PT_rays')
+        assert {'use_pass_ambient_occlusion', 'use_pass_sample_count'} <= set(draw('PANOPTES_PT_passes'))
+
     def test_warnings_are_wrapped(self, scene):
         room = {'region': types.SimpleNamespace(width=300), 'preferences': types.SimpleNamespace(
             system=types.SimpleNamespace(ui_scale=1.0))}
@@ -215,6 +233,17 @@ class TestTakingOver:
         assert (ours.noise_threshold, ours.time_budget, ours.exposure) == (0.125, 9.0, 2.5)
         assert scene.render.filter_size == 3.0
 
+    def test_limits_by_kind(self, scene, cycles):
+        cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces = 1, 2, 5
+        cycles.transparent_max_bounces = 6
+        cycles.sample_clamp_direct, cycles.sample_clamp_indirect, cycles.blur_glossy = 7.0, 4.0, 0.5
+        scene.view_layers[0].cycles.pass_debug_sample_count = True
+        bpy.ops.panoptes.take_over_cycles()
+        ours = scene.panoptes.primitive
+        assert (ours.diffuse_bounces, ours.glossy_bounces, ours.transmission_bounces) == (1, 2, 5)
+        assert (ours.transparent_bounces, ours.clamp_direct, ours.clamp_indirect) == (6, 7.0, 4.0)
+        assert ours.filter_glossy == 0.5 and scene.view_layers[0].panoptes.use_pass_sample_count
+
     def test_no_adaptive_sampling_is_no_threshold(self, scene, cycles):
         cycles.use_adaptive_sampling = False
         scene.panoptes.noise_threshold = 0.5
@@ -222,10 +251,12 @@ class TestTakingOver:
         assert scene.panoptes.noise_threshold == 0.0
 
     def test_report_is_one_sentence(self, scene, cycles, capfd):
-        cycles.pixel_filter_type, cycles.sample_clamp_indirect = 'BOX', 4.0
+        cycles.pixel_filter_type, cycles.use_fast_gi = 'BOX', True
         bpy.ops.panoptes.take_over_cycles()
         (line,) = [text for text in capfd.readouterr().out.splitlines() if 'Taken over' in text]
-        assert 'Box filter' in line and 'clamping' in line and 'exposure' in line
+        taken, missing = line.split('; ')
+        assert 'clamping' in taken and 'exposure' in taken
+        assert 'Box filter' in missing and 'fast GI' in missing
         assert line.rstrip().endswith('.')
 
     def test_absurd_values_can_be_rendered(self, scene, cycles, recorder):

@@ -54,6 +54,13 @@ def test_added_object_appears(shown):
     assert shown['plane'][:3] != pytest.approx(shown['world'][:3], abs=1e-3)
 
 
+def test_paths_end_with_what_real_time_began(shown):
+    # Light of the world on an open plane is the same by both, and by so many samples hardly noisy on the mean.
+    *color, _, _, status = shown['paths']
+    assert color == pytest.approx(shown['no debug'][:3], rel=0.02, abs=1e-3) and status == 'Paths: 4 samples'
+    assert shown['no paths'][:3] == pytest.approx(shown['no debug'][:3], abs=1e-3)
+
+
 def test_turned_view_redraws(shown):
     # The plane fills the view now and is lit by the world alone.
     assert shown['turned'][:3] != pytest.approx(shown['plane'][:3], abs=1e-3)

@@ -56,6 +56,16 @@ def show_debug_picture(kind):
     area('VIEW_3D').tag_redraw()
 
 
+def trace_paths(method):
+    bpy.context.scene.panoptes.method = method
+    area('VIEW_3D').tag_redraw()
+
+
+def picture_of_paths():
+    found = picture()
+    return None if found is None else [*found, viewports()[0]._status()]
+
+
 def final_render():
     session.start_final()
     bpy.ops.render.render('INVOKE_DEFAULT')
@@ -91,6 +101,8 @@ def other_shading():
 run([('start', start, picture), ('world', edit_world, picture), ('plane', add_plane, picture),
      ('turned', turn_view, picture), ('debug', lambda: show_debug_picture('tiles'), picture),
      ('no debug', lambda: show_debug_picture('none'), picture),
+     ('paths', lambda: trace_paths('primitive'), picture_of_paths),
+     ('no paths', lambda: trace_paths('auto'), picture),
      ('final', final_render, final_result),
      ('without engine', take_engine_away, failure), ('again', bring_engine_back, picture),
      ('solid', other_shading, nothing)])

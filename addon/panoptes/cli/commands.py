@@ -104,7 +104,7 @@ def _set_output(scene, temporary, file_format):
     image.color_depth = '32'
     image.exr_codec = 'ZIP'
     for layer in scene.view_layers:
-        passes.enable_all(layer)
+        passes.enable_all(layer, requests.method(scene.panoptes))
 
 
 def render(options, console):
@@ -149,7 +149,8 @@ def snapshot(options, console):
     _prepare(options)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     warnings = []
-    request = requests.final(depsgraph, [entry.name for entry in passes.PASSES], warnings.append)
+    request = requests.final(depsgraph, (), warnings.append)
+    request['passes'] = [entry.name for entry in passes.filled_by(request['method'])]
     with session.exclusive(wait=True):
         console.progress(0.0, 'Synchronising the scene')
         mirror = session.mirror()
