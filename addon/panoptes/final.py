@@ -38,11 +38,15 @@ def render(engine, depsgraph):
         try:
             request['passes'] = result.pass_names or ['Combined']
             request['live'] = not bpy.app.background
+            request['pieces'] = session.keep_pieces and requests.can_merge(request, warn)
             job = mirror.engine.render(request)
             cancelled = _follow(engine, job, result)
             finished = not cancelled or job.samples_ready() > 0
             if finished:
                 result.fill(job, result.pass_names)
+                if request['pieces']:
+                    session.pieces.append((layer.name, requests.merge_key(depsgraph.scene, request),
+                                           job.pieces()))
         finally:
             result.end(cancel=not finished)
         stats = dict(job.stats())
