@@ -147,6 +147,7 @@ void PathTracer::release() {
                              &shadow_rays_, &shadow_hits_, &shadow_passed_, &arrivals_, &shares_,
                              &going_, &shadow_list_, &deferred_, &counters_})
     *buffer = gl::Buffer();
+  raster_.release();
   lights_ = Lights(device_);
 }
 
@@ -162,11 +163,18 @@ void PathTracer::render_sample(uint32_t index, bool first, const Surroundings& a
   const auto pixels = film.all_active() ? uint32_t(film.width()) * uint32_t(film.height())
                                         : uint32_t(film.active_count());
   reserve(std::min(pixels, kBatch));
+  if (settings_.paths.raster_primary) {
+    shared::View view = camera_view(index);
+    view.size.z = int(index);
+    view.size.w = int(settings_.seed);
+    view.alpha.x = -1;
+    raster_.rasterize(view, around.scene, camera_block_, programs_, timer_);
+  }
   for (uint32_t start = 0; start < pixels; start += kBatch) {
     const uint32_t count = std::min(pixels - start, kBatch);
     set_frame(index, start, count);
     if (first && depth_passes_) write_depth(count, around, film);
-    begin_paths(count, false, film);
+    begin_paths(count, settings_.paths.raster_primary, camera_view(index), film);
     trace_paths(count, around, cancelled);
     resolve(count, film);
   }
@@ -175,10 +183,11 @@ void PathTracer::render_sample(uint32_t index, bool first, const Surroundings& a
 void PathTracer::write_depth(uint32_t count, const Surroundings& around, film::Film& film) {
   // Where a surface is half transparent or more, depth is that of what lies behind: as Blender's.
   constexpr float kCutAlpha = 0.5f;
-  begin_paths(count, true, film);
+  const shared::View view = gpu_scene::camera_view(camera_, {0, 0});
+  begin_paths(count, true, view, film);
   trace(count, nullptr, kCutAlpha, around);
   gl::PassScope scope(timer_, "pass_depth");
-  camera_block_.set(gpu_scene::camera_view(camera_, {0, 0}));
+  camera_block_.set(view);
   programs_.get(depth_program(film)).use();
   film.bind();
   bind_texels(rays_texels_, kRaysUnit);
@@ -186,9 +195,21 @@ void PathTracer::write_depth(uint32_t count, const Surroundings& around, film::F
   gl::dispatch(count, kBarriers | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void PathTracer::begin_paths(uint32_t count, bool centre, const film::Film& film) {
+// With rasterised primary hits all pixels are seen through one place of them.
+shared::View PathTracer::camera_view(uint32_t index) const {
+  glm::dvec2 jitter(0);
+  if (settings_.paths.raster_primary) {
+    const glm::vec2 u = film::sample_point(index, settings_.seed, 0);
+    jitter = {film::blackman_harris_offset(u.x, settings_.filter_width),
+              film::blackman_harris_offset(u.y, settings_.filter_width)};
+  }
+  return gpu_scene::camera_view(camera_, jitter);
+}
+
+void PathTracer::begin_paths(uint32_t count, bool centre, const shared::View& view,
+                             const film::Film& film) {
   gl::PassScope scope(timer_, "camera_rays");
-  camera_block_.set(gpu_scene::camera_view(camera_, {0, 0}));
+  camera_block_.set(view);
   const gl::Buffer* listed = film.all_active() ? nullptr : &film.active_pixels();
   programs_.get(begin_paths_program(options_, listed != nullptr, centre)).use();
   if (!centre) bind_texels(filter_offsets_, kFilterUnit);
@@ -221,7 +242,13 @@ void PathTracer::trace_paths(uint32_t count, const Surroundings& around,
   const gl::Buffer* listed = nullptr;
   const auto materials = uint32_t(around.scene.materials().size());
   for (uint32_t depth = 0; count > 0; ++depth) {
-    trace(count, listed, -1, around);
+    if (depth == 0 && settings_.paths.raster_primary) {
+      gl::PassScope scope(timer_, "camera_rays");
+      set_list_view();
+      raster_.write_hits(count, rays_buffer_, hits_, around.scene, around.triangles, programs_);
+    } else {
+      trace(count, listed, -1, around);
+    }
     stop_if(cancelled);
     {
       gl::PassScope scope(timer_, "path_hits_sorted");
@@ -244,12 +271,17 @@ void PathTracer::trace_paths(uint32_t count, const Surroundings& around,
   }
 }
 
-void PathTracer::fetch(const Surroundings& around) {
-  gl::PassScope scope(timer_, "path_surfaces");
+// Positions are about the list's origin, images are read at their finest level.
+void PathTracer::set_list_view() {
   shared::View view{};
   view.world_origin = glm::vec4(glm::vec3(list_origin_), 0);
   view.filtering = {-64.0f, 0, camera_.perspective() ? 1.0f : 0.0f, 0};
   list_block_.set(view);
+}
+
+void PathTracer::fetch(const Surroundings& around) {
+  gl::PassScope scope(timer_, "path_surfaces");
+  set_list_view();
   const std::vector<uint32_t>& counts = bins_.counts();
   uint32_t first = 0;
   for (size_t m = 0; m + 1 < counts.size(); first += counts[m++]) {

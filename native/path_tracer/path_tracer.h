@@ -15,6 +15,7 @@
 #include "gpu_scene/view_block.h"
 #include "path_tracer/lights.h"
 #include "path_tracer/programs.h"
+#include "path_tracer/raster_primary.h"
 #include "path_tracer/settings.h"
 #include "plan/effect.h"
 #include "tracing/hit_bins.h"
@@ -63,8 +64,10 @@ class PathTracer {
 
  private:
   void reserve(uint32_t paths);
-  void begin_paths(uint32_t count, bool centre, const film::Film& film);
+  void begin_paths(uint32_t count, bool centre, const shared::View& view, const film::Film& film);
   void trace_paths(uint32_t count, const Surroundings& around, const std::atomic<bool>& cancelled);
+  void set_list_view();
+  shared::View camera_view(uint32_t index) const;
   void trace(uint32_t count, const gl::Buffer* listed, float threshold, const Surroundings& around);
   void fetch(const Surroundings& around);
   void miss(uint32_t first, uint32_t count, const Surroundings& around);
@@ -92,6 +95,7 @@ class PathTracer {
   int64_t rays_ = 0;
 
   gpu_scene::ViewBlock camera_block_, list_block_;
+  RasterPrimary raster_;
   gl::Buffer frame_block_, filter_buffer_;
   gl::Texture filter_offsets_;
   tracing::OpacityWaves opacity_;

@@ -62,14 +62,13 @@ gl::ProgramSource bin_program(const char* name) {
 }
 
 void GBuffer::resize(int width, int height, const GBufferOptions& options) {
-  if (width == width_ && height == height_ && options == options_) return;
+  if (position_ && width == width_ && height == height_ && options == options_) return;
   // Old storage goes first, so that the peak is not the sum of both.
   *this = GBuffer();
+  resize_visibility(width, height);
   const auto image = [&](GLenum format) {
     return gl::Texture({GL_TEXTURE_2D, format, width, height, 1, 1});
   };
-  visibility_ = image(GL_RG32UI);
-  depth_ = image(GL_DEPTH_COMPONENT32F);
   position_ = image(GL_RGBA32F);
   normals_ = image(GL_RGBA32UI);
   diffuse_ = image(GL_RGBA16F);
@@ -78,12 +77,19 @@ void GBuffer::resize(int width, int height, const GBufferOptions& options) {
   if (options.transmission) transmission_ = image(GL_RGBA32UI);
   if (options.layers) layers_ = image(GL_RGBA32UI);
   pixels_ = gl::Buffer(int64_t(width) * height * 4);
+  options_ = options;
+}
+
+void GBuffer::resize_visibility(int width, int height) {
+  if (width == width_ && height == height_) return;
+  *this = GBuffer();
+  visibility_ = gl::Texture({GL_TEXTURE_2D, GL_RG32UI, width, height, 1, 1});
+  depth_ = gl::Texture({GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, width, height, 1, 1});
   framebuffer_ = gl::Framebuffer::make();
   glNamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT0, visibility_.id(), 0);
   glNamedFramebufferTexture(framebuffer_.id(), GL_DEPTH_ATTACHMENT, depth_.id(), 0);
   width_ = width;
   height_ = height;
-  options_ = options;
 }
 
 void GBuffer::rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,

@@ -40,6 +40,8 @@ class GBuffer {
  public:
   // (Re)allocates when the size or the options differ from the last call's.
   void resize(int width, int height, const GBufferOptions& options);
+  // The same for rasterize() alone: without room for surfaces.
+  void resize_visibility(int width, int height);
 
   // Finds the triangle and the depth of each pixel for the view that is set in the ViewBlock.
   void rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,

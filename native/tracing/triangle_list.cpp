@@ -77,6 +77,11 @@ bool TriangleList::update(const scene::Scene& scene, const gpu_scene::GpuScene& 
   origin_ = middle_of(scene);
   bounds_ = {};
   lost_ = 0;
+  first_primitives_.clear();
+  for (const shared::TriangleSpan& span : spans.list) {
+    if (span.instance >= first_primitives_.size()) first_primitives_.resize(span.instance + 1);
+    first_primitives_[span.instance] = span.first_primitive - span.first_triangle;
+  }
   if (count_ > 0) flatten(spans.list, gpu, programs);
   revision_ = gpu.geometry_revision();
   return true;

@@ -34,6 +34,9 @@ class TriangleList {
   // Triangles that the last update() found not finite or too far from the others to be met; they
   // are in the list, but nobody sees them.
   uint32_t lost() const { return lost_; }
+  // Of each instance that update() has listed, by its place on the GPU: the primitive that is its
+  // mesh's first triangle.
+  const std::vector<uint32_t>& first_primitives() const { return first_primitives_; }
   // Where positions are relative to, world space.
   const glm::vec3& origin() const { return origin_; }
   // Holds all triangles that somebody sees; relative to the origin. Empty if there are none.
@@ -54,6 +57,7 @@ class TriangleList {
   glm::vec3 origin_{0};
   scene::Bounds bounds_;
   int64_t revision_ = -1;
+  std::vector<uint32_t> first_primitives_;
   gl::Buffer buffer_;
   gl::Texture texture_;
   gl::Buffer spans_, summary_;
