@@ -388,6 +388,47 @@ TEST_F(PathLights, LampsThatRaysMeetShareTheirLightWithSamples) {
   }
 }
 
+// Tenths of milliseconds are enough to compare.
+double milliseconds(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST_F(PathLights, TenThousandLampsCostAFewTimesOneAndNoiseFarLessThanEvenChoice) {
+  constexpr uint32_t kInvocations = 64, kRuns = 64;
+  const std::vector<Place> receivers = places(64, 50);
+  std::vector<double> times;
+  for (int count : {1, 100, 10'000}) {
+    install(strewn({point({0, 0, 0}, 100)}, count, 50));
+    std::vector<glm::dvec4> means = run(kIrradiance, receivers, kInvocations, kRuns);  // compiles
+    double best = 1e30;
+    for (int i = 0; i < 3; ++i)
+      best = std::min(best, milliseconds([&] { means = run(kIrradiance, receivers, kInvocations, kRuns); }));
+    times.push_back(best / (double(receivers.size()) * kInvocations * kRuns) * 1e6);
+    if (count < 10'000) continue;
+    // One of n lamps at even chance gives n times its light, of which the sum is the mean.
+    double ratio = 0;
+    std::vector<double> due;
+    for (size_t i = 0; i < receivers.size(); ++i) {
+      double sum = 0, squares = 0;
+      for (const scene::Light& lamp : scene.lights()) {
+        const double e = irradiance(lamp, receivers[i]);
+        sum += e;
+        squares += e * e;
+      }
+      due.push_back(sum);
+      ratio += (count * squares - sum * sum) / (means[i].y - means[i].x * means[i].x) / double(receivers.size());
+    }
+    expect_unbiased(means, due, kInvocations * kRuns);
+    EXPECT_GT(ratio, 30);
+    RecordProperty("variance_of_even_choice", std::to_string(ratio));
+  }
+  for (double ns : times) RecordProperty(fmt::format("ns_{}", &ns - &ns), std::to_string(ns));
+  printf("ns a sample: %.1f %.1f %.1f\n", times[0], times[1], times[2]);
+  EXPECT_LT(times[2], 40 * times[0]);
+}
+
 // --- glowing triangles ---------------------------------------------------------------------------
 
 scene::Material glow(const glm::vec3& radiance, bool varies) {
