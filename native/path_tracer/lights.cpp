@@ -12,7 +12,7 @@ namespace panoptes::path_tracer {
 
 namespace {
 
-// Lamps that scattered rays look for: llvmpipe cuts off an invocation after 65 535 iterations, and in
+// Lamps that scattered rays look for: llvmpipe cuts an invocation off after 65 535 iterations, and in
 // the worst case a ray goes through all the nodes of a tree of lamps, two a lamp, and all the suns.
 constexpr size_t kMostSeenLamps = 16384, kMostSeenSuns = 1024;
 

@@ -146,33 +146,3 @@ void sample_record(LightRecord l, vec3 from, vec2 random, inout LightSample s) {
                              : emitted_by_area(l, cosine, distance2);
   set_lamp(flags, e, s);
 }
-
-#if LAMPS_SEEN
-// What of a lamp with an extent the ray sees before t_max; radiance 0 where it passes by.
-Emitted lamp_on_ray(LightRecord l, vec3 from, vec3 direction, float t_max) {
-  uint kind = record_kind(l);
-  const Emitted NOTHING = Emitted(vec3(0.0), 0.0);
-  if (kind == KIND_SUN) {
-    float cosine = -dot(direction, l.axis.xyz);
-    if (cosine <= 0.0) return NOTHING;
-    vec3 off = direction / cosine + l.axis.xyz;
-    return dot(off, off) < l.axis.w * l.axis.w ? emitted_by_sun(l, cosine) : NOTHING;
-  }
-  vec3 apart = from - l.place.xyz, normal = l.axis.xyz;
-  float length2 = dot(apart, apart);
-  if (kind == KIND_POINT) normal = length2 > 0.0 ? apart * inversesqrt(length2) : -direction;
-  float cosine = -dot(direction, normal);
-  float t = dot(apart, normal) / cosine;
-  if (!(cosine > 0.0 && t > 0.0 && t < t_max)) return NOTHING;
-  vec3 off = apart + t * direction;
-  if (is_round(kind))
-    return dot(off, off) < l.axis.w * l.axis.w ? emitted_by_disk(l, kind, cosine, t * t) : NOTHING;
-  // Coordinates along the sides, which a sheared lamp has not square to each other.
-  float xx = dot(l.edge_x.xyz, l.edge_x.xyz), yy = dot(l.edge_y.xyz, l.edge_y.xyz);
-  float xy = dot(l.edge_x.xyz, l.edge_y.xyz);
-  vec2 along = vec2(dot(off, l.edge_x.xyz), dot(off, l.edge_y.xyz));
-  vec2 place = vec2(along.x * yy - along.y * xy, along.y * xx - along.x * xy) / (xx * yy - xy * xy);
-  bool within = kind == KIND_ELLIPSE ? dot(place, place) < 0.25 : max(abs(place.x), abs(place.y)) < 0.5;
-  return within ? emitted_by_area(l, cosine, t * t) : NOTHING;
-}
-#endif

@@ -10,7 +10,6 @@ layout(binding = 1) uniform usamplerBuffer light_nodes;  // as LightNode
 const float LEAST_COSINE = 0.03125;
 
 uvec4 node_texel(int node, int i) { return texelFetch(light_nodes, node * NODE_TEXELS + i); }
-uint node_child(int node) { return node_texel(node, 1).w; }
 
 // The cosine of the angle a - b, of 0 where b is greater. Angles from 0 to pi, by sine and cosine.
 float cosine_of_rest(float sine_a, float cosine_a, float sine_b, float cosine_b) {
@@ -27,15 +26,25 @@ float receiver_cosine(vec3 normal, vec3 direction, float sine_b, float cosine_b)
   return max(cosine_of_rest(sine_of(cosine), cosine, sine_b, cosine_b), LEAST_COSINE);
 }
 
-// About the irradiance that what is below `node` gives at `from`, W/m2. 0 only where there is none.
-float node_importance(int node, vec3 from, vec3 normal) {
+// About the mean of 1 / distance^2 over a ball of that squared radius whose centre is so far off: within
+// 4 % of the exact mean.
+float mean_inverse_square(float distance2, float radius2) {
+  if (distance2 < radius2) return (3.0 - 1.5 * distance2 / radius2) / max(radius2, 1.0e-30);
+  float ratio = radius2 / max(distance2, 1.0e-30);
+  return (1.0 + 0.5 * ratio * ratio) / max(distance2, 1.0e-30);
+}
+
+// About the irradiance that what is below `node` gives at `from`, W/m2; 0 only where there is none. And
+// LightNode.child of it.
+float node_importance(int node, vec3 from, vec3 normal, out uint child) {
   uvec4 words0 = node_texel(node, 0), words1 = node_texel(node, 1), words2 = node_texel(node, 2);
+  child = words1.w;
   vec3 axis = unpack_unit(words2.x);
   float intensity = uintBitsToFloat(words0.w);
   float cosine_o = uintBitsToFloat(words2.y), sine_o = sine_of(cosine_o);
   bool received = normal != vec3(0.0);
 #if LIGHT_SUNS
-  if ((words1.w & NODE_INFINITE) != 0u)
+  if ((child & NODE_INFINITE) != 0u)
     return received ? intensity * receiver_cosine(normal, -axis, sine_o, cosine_o) : intensity;
 #endif
   vec3 low = uintBitsToFloat(words0.xyz), high = uintBitsToFloat(words1.xyz);
@@ -50,64 +59,77 @@ float node_importance(int node, vec3 from, vec3 normal) {
   }
   vec3 direction = to_center * inversesqrt(max(distance2, 1.0e-30));
   float cosine = -dot(axis, direction);
-  if ((words1.w & NODE_TWO_SIDED) != 0u) cosine = abs(cosine);
+  if ((child & NODE_TWO_SIDED) != 0u) cosine = abs(cosine);
   float sine = sine_of(cosine);
   float cosine_x = cosine_of_rest(sine, cosine, sine_o, cosine_o);
   float sine_x = sine_of_rest(sine, cosine, sine_o, cosine_o);
   float emitted = cosine_of_rest(sine_x, cosine_x, sine_b, cosine_b);
   if (emitted <= uintBitsToFloat(words2.z)) return 0.0;
-  float importance = intensity * emitted / max(max(distance2, radius2), 1.0e-30);
+  // A cube has the volume of a ball of half its own half diagonal, squared.
+  float importance = intensity * emitted * mean_inverse_square(distance2, 0.5 * radius2);
   if (received) importance *= receiver_cosine(normal, direction, sine_b, cosine_b);
   return min(importance, 1.0e30);
 }
 
 // The same of all lights.
 float tree_importance(vec3 from, vec3 normal) {
+  uint child;
 #if LIGHT_SUNS && LIGHT_LOCAL
   // The root's children are what is somewhere and what is nowhere.
-  return node_importance(1, from, normal) +
-         node_importance(int(node_child(0) & NODE_INDEX), from, normal);
+  int second = int(node_texel(0, 1).w & NODE_INDEX);
+  return node_importance(1, from, normal, child) + node_importance(second, from, normal, child);
 #else
-  return node_importance(0, from, normal);
+  return node_importance(0, from, normal, child);
 #endif
 }
 
-// The share of what is below `node` that its first child gets; below 0 if there is no light.
-float first_share(int node, uint child, vec3 from, vec3 normal) {
-  float first = node_importance(node + 1, from, normal);
-  float sum = first + node_importance(int(child & NODE_INDEX), from, normal);
-  return sum > 0.0 ? first / sum : -1.0;
+// The two ways on from a node.
+struct Fork {
+  int first, second;
+  uint first_child, second_child;  // LightNode.child of these
+  float share;  // of the first; below 0 if there is no light
+};
+
+Fork fork_at(int node, uint child, vec3 from, vec3 normal) {
+  Fork f;
+  f.first = node + 1;
+  f.second = int(child & NODE_INDEX);
+  float first = node_importance(f.first, from, normal, f.first_child);
+  float sum = first + node_importance(f.second, from, normal, f.second_child);
+  f.share = sum > 0.0 ? first / sum : -1.0;
+  return f;
 }
 
 // A record by chance, `random` in [0, 1), and its probability; NO_LIGHT where none shines.
 uint choose_light(vec3 from, vec3 normal, float random, out float probability) {
   probability = 1.0;
   int node = 0;
-  for (int level = 0; level <= MOST_LEVELS; ++level) {
-    uint child = node_child(node);
-    if ((child & NODE_LEAF) != 0u) return child & NODE_INDEX;
-    float share = first_share(node, child, from, normal);
-    if (share < 0.0) break;
-    bool first = random < share;
-    probability *= first ? share : 1.0 - share;
-    random = min(first ? random / share : (random - share) / (1.0 - share), 0.99999994);
-    node = first ? node + 1 : int(child & NODE_INDEX);
+  uint child = node_texel(0, 1).w;
+  for (int level = 0; level < MOST_LEVELS && (child & NODE_LEAF) == 0u; ++level) {
+    Fork f = fork_at(node, child, from, normal);
+    if (f.share < 0.0) return NO_LIGHT;
+    bool first = random < f.share;
+    float share = first ? f.share : 1.0 - f.share;
+    random = min((first ? random : random - f.share) / share, 0.99999994);
+    probability *= share;
+    node = first ? f.first : f.second;
+    child = first ? f.first_child : f.second_child;
   }
-  return NO_LIGHT;
+  return child & NODE_INDEX;
 }
 
 // The probability with which choose_light() comes to the leaf that `trail` leads to.
 float light_probability(uint trail, vec3 from, vec3 normal) {
   float probability = 1.0;
   int node = 0;
-  for (int level = 0; level < MOST_LEVELS; ++level, trail >>= 1) {
-    uint child = node_child(node);
-    if ((child & NODE_LEAF) != 0u) break;
-    float share = first_share(node, child, from, normal);
-    if (share < 0.0) return 0.0;
+  uint child = node_texel(0, 1).w;
+  for (int level = 0; level < MOST_LEVELS && (child & NODE_LEAF) == 0u; ++level, trail >>= 1) {
+    Fork f = fork_at(node, child, from, normal);
+    if (f.share < 0.0) return 0.0;
     bool first = (trail & 1u) == 0u;
-    probability *= first ? share : 1.0 - share;
-    node = first ? node + 1 : int(child & NODE_INDEX);
+    probability *= first ? f.share : 1.0 - f.share;
+    node = first ? f.first : f.second;
+    child = first ? f.first_child : f.second_child;
   }
   return probability;
 }

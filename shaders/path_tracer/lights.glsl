@@ -112,25 +112,7 @@ float light_pdf_world(vec3 from, vec3 normal, vec3 direction) {
 }
 
 #if LAMPS_SEEN
-// Radiance of one lamp, weighted.
-vec3 lamp_seen(uint light, vec3 from, vec3 normal, vec3 direction, float t_max, float scattering_pdf) {
-  LightRecord l = fetch_record(light);
-  Emitted e = lamp_on_ray(l, from, direction, t_max);
-  if (e.radiance == vec3(0.0) || scattering_pdf <= 0.0) return e.radiance;
-  // What passes through walls is for samples alone.
-  if ((record_flags(l) & RECORD_SHADOWLESS) != 0u) return vec3(0.0);
-  float ratio = min(e.pdf, 1.0e37) * record_probability(l, from, normal) / scattering_pdf;
-  return e.radiance / (1.0 + ratio * ratio);
-}
-
-// False only where the ray passes by the node's bounds.
-bool meets_bounds(uvec4 words0, uvec4 words1, vec3 from, vec3 inverse, float t_max) {
-  vec3 a = (uintBitsToFloat(words0.xyz) - from) * inverse, b = (uintBitsToFloat(words1.xyz) - from) * inverse;
-  vec3 near = min(a, b), far = max(a, b);
-  float enter = max(max(near.x, near.y), max(near.z, 0.0));
-  float leave = min(min(far.x, far.y), min(far.z, t_max));
-  return enter <= leave * 1.00001;
-}
+#include "path_tracer/lamps_seen.glsl"
 #endif
 
 // Radiance of the lamps with an extent that the ray from `from` passes before `t_max` (FAR: it leaves
@@ -138,23 +120,9 @@ bool meets_bounds(uvec4 words0, uvec4 words1, vec3 from, vec3 inverse, float t_m
 // that sent it; with their whole radiance where that was singular, at scattering_pdf 0. Lamps stop no
 // ray.
 vec3 lamps_seen(vec3 from, vec3 normal, vec3 direction, float t_max, float scattering_pdf) {
-  vec3 sum = vec3(0.0);
 #if LAMPS_SEEN
-  vec3 inverse = 1.0 / mix(direction, vec3(1.0e-30), equal(direction, vec3(0.0)));
-  uint node = light_constants.first_seen;
-  while (node < light_constants.end_seen) {
-    uvec4 words0 = node_texel(int(node), 0), words1 = node_texel(int(node), 1);
-    bool met = meets_bounds(words0, words1, from, inverse, t_max);
-    bool leaf = (words1.w & NODE_LEAF) != 0u;
-    if (met && leaf)
-      sum += lamp_seen(words1.w & NODE_INDEX, from, normal, direction, t_max, scattering_pdf);
-    node = met ? node + 1u : node_texel(int(node), 2).w;
-  }
-#if LIGHT_SUNS
-  if (t_max >= FAR)
-    for (uint light = 0u; light < light_constants.seen_suns; ++light)
-      sum += lamp_seen(light, from, normal, direction, t_max, scattering_pdf);
+  return radiance_of_lamps(from, normal, direction, t_max, scattering_pdf);
+#else
+  return vec3(0.0);
 #endif
-#endif
-  return sum;
 }

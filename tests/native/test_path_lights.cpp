@@ -1,14 +1,14 @@
 // Light sampling of the path tracer on the GPU, against quadrature and sums over all lights.
 #include "gl/context.h"
 #include "gl/dispatch.h"
+#include "gl/counters.h"
 #include "path_tracer/lights.h"
+#include "rays/tracing_device.h"
 #include "support.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
-#include <bit>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -76,11 +76,11 @@ vec4 run(vec3 position, vec3 normal, uint index) {
 }
 )";
 
-// x: 1 where samples found no light.
+// x: 1 where the walk ended at no light.
 constexpr const char* kNothing = R"(
 vec4 run(vec3 position, vec3 normal, uint index) {
-  LightSample s;
-  return vec4(light_sample(position, normal, random3(), s) ? 0.0 : 1.0);
+  float probability;
+  return vec4(choose_light(position, normal, next_random(), probability) == NO_LIGHT ? 1.0 : 0.0);
 }
 )";
 
@@ -154,6 +154,75 @@ vec4 run(vec3 position, vec3 normal, uint index) {
   return vec4(light_pdf_world(position, normal, vec3(r * cos(phi), r * sin(phi), z)) * 12.56637061436);
 }
 )";
+
+// Straight up: x: radiance of all lamps.
+constexpr const char* kUpwards = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  vec3 up = normalize(vec3(1.0e-3 * random3().xy, 1.0));
+  return vec4(lamps_seen(position, normal, up, FAR, 0.0).g);
+}
+)";
+
+// The same, twice, where samples are as dense as the scattering; all lamps are alike.
+constexpr const char* kUpwardsWeighed = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  vec3 up = normalize(vec3(1.0e-3 * random3().xy, 1.0));
+  LightRecord l = fetch_record(0u);
+  float pdf = lamp_on_ray(l, position, up, FAR).pdf * record_probability(l, position, normal);
+  return vec4(2.0 * lamps_seen(position, normal, up, FAR, pdf).g);
+}
+)";
+
+// x: samples on the half where x > 0 from the middle; y: others.
+constexpr const char* kBrightHalf = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  if (!light_sample(position, normal, random3(), s)) return vec4(0.0);
+  bool bright = position.x + s.direction.x * s.t_max > position.x - 0.25;
+  return vec4(bright, !bright, 0.0, 0.0);
+}
+)";
+
+// x: 1 where anything is not a finite number.
+constexpr const char* kNotFinite = R"(
+bool finite_number(float x) { return abs(x) <= 3.2e38; }
+bool finite_vector(vec3 v) { return finite_number(v.x) && finite_number(v.y) && finite_number(v.z); }
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  light_sample(position, normal, random3(), s);
+  bool good = finite_vector(s.direction) && finite_vector(s.value) && finite_number(s.pdf) &&
+              finite_number(s.t_max) && s.pdf >= 0.0 && abs(length(s.direction) - 1.0) < 1.0e-4;
+  if (s.pdf > 0.0) good = good && finite_vector(s.value / s.pdf);
+  vec3 direction = normalize(random3() - 0.5);
+  for (uint primitive = 0u; primitive < 2u; ++primitive)
+    good = good && finite_number(light_pdf_primitive(position, normal, primitive, direction, random3().x)) &&
+           finite_number(light_pdf_primitive(position, normal, primitive, direction, 0.0));
+  good = good && finite_vector(lamps_seen(position, normal, direction, FAR, 0.3)) &&
+         finite_vector(lamps_seen(position, normal, direction, FAR, 0.0)) &&
+         finite_number(light_pdf_world(position, normal, direction)) &&
+         finite_number(light_pdf_world(position, normal, vec3(0.0, 0.0, 1.0)));
+  return vec4(good ? 0.0 : 1.0);
+}
+)";
+
+// x: irradiance by samples; z: 1 where a sample wants a shadow ray, or rays show what is the samples'.
+constexpr const char* kShadowless = R"(
+vec4 run(vec3 position, vec3 normal, uint index) {
+  LightSample s;
+  if (!light_sample(position, normal, random3(), s)) return vec4(0.0);
+  bool wrong = s.t_max != 0.0 || !s.singular ||
+               lamps_seen(position, normal, s.direction, FAR, 1.0) != vec3(0.0);
+  float e = s.value.g * max(dot(normal, s.direction), 0.0) / s.pdf;
+  return vec4(e, e * e, wrong ? 1.0 : 0.0, 0.0);
+}
+)";
+
+// A dim sky with a sun of .01 rad and radiance 20 000 in it, towards (0, 3, 4).
+constexpr const char* kSkyWithSun =
+    "vec3 evaluate_world(vec3 direction) {\n"
+    "  bool sun = distance(normalize(direction), vec3(0.0, 0.6, 0.8)) < 0.01;\n"
+    "  return vec3(sun ? 20000.0 : 0.2 + 0.2 * direction.z);\n"
+    "}\n";
 
 struct Receiver {
   glm::vec4 position, normal;
@@ -272,6 +341,33 @@ double irradiance(const scene::Light& lamp, const Place& place) {
   return sum / (double(steps) * steps);
 }
 
+// Irradiance that a mesh of constant radiance gives, by Lambert's formula for polygons, with each
+// triangle clipped to the receiver's horizon.
+double irradiance(const Geometry& mesh, double radiance, const Place& place) {
+  double sum = 0;
+  for (const glm::ivec3& t : mesh.triangles) {
+    std::vector<glm::dvec3> corners, above;
+    const glm::dvec3 n(place.normal);
+    for (int k = 0; k < 3; ++k)
+      corners.push_back(glm::dvec3(mesh.positions[size_t(t[k])]) - glm::dvec3(place.position));
+    for (size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 a = corners[k], b = corners[(k + 1) % 3];
+      const double za = glm::dot(a, n), zb = glm::dot(b, n);
+      if (za >= 0) above.push_back(a);
+      if ((za >= 0) != (zb >= 0)) above.push_back(a + (b - a) * (za / (za - zb)));
+    }
+    double triangle = 0;
+    for (size_t k = 0; k < above.size(); ++k) {
+      const glm::dvec3 a = glm::normalize(above[k]), b = glm::normalize(above[(k + 1) % above.size()]);
+      const glm::dvec3 across = glm::cross(a, b);
+      const double sine = glm::length(across);
+      if (sine > 1e-12) triangle += std::atan2(sine, glm::dot(a, b)) * glm::dot(across / sine, n);
+    }
+    sum += 0.5 * radiance * std::abs(triangle);
+  }
+  return sum;
+}
+
 std::vector<Place> places(uint32_t count, float extent, uint32_t seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> u(-1, 1);
@@ -282,6 +378,12 @@ std::vector<Place> places(uint32_t count, float extent, uint32_t seed = 1) {
     list.push_back({extent * glm::vec3(u(random), u(random), u(random)), glm::normalize(n)});
   }
   return list;
+}
+
+scene::Material glow(const glm::vec3& radiance, bool varies) {
+  scene::Material m = emitter(radiance);
+  m.facts.emission_varies = varies;
+  return m;
 }
 
 std::vector<scene::Light> one_of_each() {
@@ -388,40 +490,239 @@ TEST_F(PathLights, LampsThatRaysMeetShareTheirLightWithSamples) {
   }
 }
 
-// --- glowing triangles ---------------------------------------------------------------------------
-
-scene::Material glow(const glm::vec3& radiance, bool varies) {
-  scene::Material m = emitter(radiance);
-  m.facts.emission_varies = varies;
-  return m;
-}
-
-// Irradiance that a mesh of constant radiance gives, by Lambert's formula for polygons, with each
-// triangle clipped to the receiver's horizon.
-double irradiance(const Geometry& mesh, double radiance, const Place& place) {
-  double sum = 0;
-  for (const glm::ivec3& t : mesh.triangles) {
-    std::vector<glm::dvec3> corners, above;
-    const glm::dvec3 n(place.normal);
-    for (int k = 0; k < 3; ++k)
-      corners.push_back(glm::dvec3(mesh.positions[size_t(t[k])]) - glm::dvec3(place.position));
-    for (size_t k = 0; k < 3; ++k) {
-      const glm::dvec3 a = corners[k], b = corners[(k + 1) % 3];
-      const double za = glm::dot(a, n), zb = glm::dot(b, n);
-      if (za >= 0) above.push_back(a);
-      if ((za >= 0) != (zb >= 0)) above.push_back(a + (b - a) * (za / (za - zb)));
+TEST_F(PathLights, TenThousandLampsCostLittleMoreThanAHundredAndLessNoiseThanEvenChoice) {
+  constexpr uint32_t kInvocations = 64, kRuns = 64;
+  const std::vector<Place> receivers = places(64, 50);
+  std::map<int, double> ns;  // a sample, of CPU time
+  for (int count : {1, 100, 10'000}) {
+    install(strewn({point({0, 0, 0}, 100)}, count, 50));
+    std::vector<glm::dvec4> means = run(kIrradiance, receivers, kInvocations, kRuns);  // compiles
+    double best = 1e30;
+    for (int i = 0; i < 3; ++i) {
+      const Stopwatch watch;
+      means = run(kIrradiance, receivers, kInvocations, kRuns);
+      best = std::min(best, watch.cpu_ms());
     }
-    double triangle = 0;
-    for (size_t k = 0; k < above.size(); ++k) {
-      const glm::dvec3 a = glm::normalize(above[k]), b = glm::normalize(above[(k + 1) % above.size()]);
-      const glm::dvec3 across = glm::cross(a, b);
-      const double sine = glm::length(across);
-      if (sine > 1e-12) triangle += std::atan2(sine, glm::dot(a, b)) * glm::dot(across / sine, n);
+    ns[count] = best / (double(receivers.size()) * kInvocations * kRuns) * 1e6;
+    RecordProperty(fmt::format("ns_a_sample_of_{}", count), fmt::format("{:.1f}", ns[count]));
+    if (count < 10'000) continue;
+    // One of n lamps at even chance gives n times its light, of which the sum is the mean.
+    double ratio = 0;
+    std::vector<double> due;
+    for (size_t i = 0; i < receivers.size(); ++i) {
+      double sum = 0, squares = 0;
+      for (const scene::Light& lamp : scene.lights()) {
+        const double e = irradiance(lamp, receivers[i]);
+        sum += e;
+        squares += e * e;
+      }
+      due.push_back(sum);
+      ratio += (count * squares - sum * sum) / (means[i].y - means[i].x * means[i].x) / double(receivers.size());
     }
-    sum += 0.5 * radiance * std::abs(triangle);
+    expect_unbiased(means, due, kInvocations * kRuns);
+    EXPECT_GT(ratio, 30);
+    RecordProperty("variance_of_even_choice", fmt::format("{:.1f}", ratio));
   }
-  return sum;
+  // Twice the levels.
+  EXPECT_LT(ns[10'000], 5 * ns[100]);
 }
+
+// --- capacities ----------------------------------------------------------------------------------
+
+TEST_F(PathLights, RaysFindTheirWayThroughTenThousandSoftLamps) {
+  constexpr uint32_t kInvocations = 64, kRuns = 64;
+  const std::vector<Place> receivers = places(8, 10);
+  install(strewn({point({0, 0, 0}, 100, 0.3f)}, 10'000, 10));
+  std::vector<double> due;
+  for (const Place& place : receivers) {
+    due.push_back(0);
+    for (scene::Light lamp : scene.lights()) {
+      // The few that are near enough have a shape; the others are points.
+      if (glm::distance(lamp.position(), place.position) > 3) lamp.radius = 0;
+      due.back() += irradiance(lamp, place);
+    }
+  }
+  expect_unbiased(run(kBothWays, receivers, kInvocations, kRuns), due, kInvocations * kRuns, 0.01);
+  EXPECT_TRUE(lights.warnings().empty());
+}
+
+// A ray that passes thousands of lamps at once neither ends early nor loses light.
+TEST_F(PathLights, APileOfSoftLampsLosesNoLight) {
+  TestScene s;
+  for (int i = 0; i < 20'000; ++i)
+    s.lights.push_back(area({0, 0, 2 + 1e-5f * float(i)}, {0, 0, -1}, 1, scene::AreaShape::kDisk, 1, 1));
+  install(s);
+  ASSERT_EQ(lights.warnings().size(), 1u);
+  EXPECT_NE(lights.warnings()[0].find("16384 of 20000 soft lamps"), std::string::npos);
+  const Place below{{0, 0, 0}, {0, 0, 1}};
+  const double radiance = 1 / (4 * kPi * 0.25);
+  EXPECT_NEAR(run(kUpwards, {below}, 64, 1)[0].x, 16384 * radiance, 1e-4 * 16384 * radiance);
+  const glm::dvec4 weighed = run(kUpwardsWeighed, {below}, 512, 1)[0];
+  EXPECT_NEAR(weighed.x, 16384 * radiance, 0.05 * 16384 * radiance);
+}
+
+TEST_F(PathLights, SaysWhenTheDriverCannotAddressTheLights) {
+  gl::DeviceInfo small = context->device();
+  small.max_texture_buffer_texels = 65536;  // what OpenGL promises
+  path_tracer::Lights few(small);
+  const auto list_lamps = [&](int count) {
+    strewn({point({0, 0, 0}, 100)}, count, 50).install(scene);
+    gpu.update(scene);
+    list.update(scene, gpu, programs, timer);
+    few.update(scene, gpu, list, programs, timer);
+  };
+  expect_error([&] { list_lamps(20'000); }, "more lamps and glowing triangles than this graphics driver");
+  EXPECT_NO_THROW(list_lamps(5'000));
+  EXPECT_EQ(few.lamp_count(), 5'000u);
+  // The world's map gets coarser instead.
+  TestScene s;
+  s.world = world(kSkyWithSun);
+  s.install(scene);
+  gpu.update(scene);
+  few.update(scene, gpu, list, programs, timer);
+  EXPECT_TRUE(few.world_sampled());
+  EXPECT_LE(few.bytes(), 65536 * 4 + 64);
+}
+
+TEST_F(PathLights, AHundredThousandTrianglesMayGlow) {
+  constexpr uint32_t kInvocations = 64, kRuns = 64;
+  TestScene s;
+  const Geometry ball = sphere({0, 0, 0}, 1, 320);
+  const Id glowing = s.add_material(glow({1, 1, 1}, true));
+  s.add_object(ball, {glowing});
+  install(s);
+  EXPECT_GT(lights.triangle_count(), 100'000u);
+  std::vector<Place> receivers = places(8, 4);
+  std::erase_if(receivers, [](const Place& p) { return glm::length(p.position) < 1.5f; });
+  for (const glm::dvec4& mean : run(kTriangleDensities, receivers, kInvocations, kRuns)) {
+    EXPECT_EQ(mean.y, 0);
+    EXPECT_GT(mean.z, 0.5);
+  }
+}
+
+// --- updates -------------------------------------------------------------------------------------
+
+TEST_F(PathLights, OnlyWhatHasChangedIsDoneAgain) {
+  TestScene s;
+  s.add_object(floor_at(0, 1), {s.add_material(glow({1, 1, 1}, true))});
+  s.lights = {point({0, 0, 2}, 100)};
+  s.world = world(kSkyWithSun);
+  install(s);
+  const auto uploads = [&] {
+    const int64_t before = gl::counters().uploaded_bytes;
+    lights.update(scene, gpu, list, programs, timer);
+    return gl::counters().uploaded_bytes - before;
+  };
+  EXPECT_EQ(uploads(), 0);
+  // A dragged lamp: its record and the tree, no question to the material, no map.
+  s.lights[0].energy = 50;
+  scene.set_lights(s.lights);
+  gpu.update(scene);
+  const int64_t records = 3 * sizeof(shared::LightRecord) + 5 * sizeof(shared::LightNode) + 2 * 4;
+  EXPECT_EQ(uploads(), records + int64_t(sizeof(shared::LightConstants)));
+  EXPECT_EQ(uploads(), 0);
+  // Another radiance is found out.
+  scene.set_material_params(1, {glm::vec4(0)});
+  gpu.update(scene);
+  EXPECT_GT(uploads(), 0);
+  EXPECT_EQ(lights.triangle_count(), 0u);
+  EXPECT_EQ(lights.lamp_count(), 1u);
+  // No lamps and no world any more.
+  scene.set_lights({});
+  scene.set_world(constant_world({0, 0, 0}));
+  gpu.update(scene);
+  uploads();
+  EXPECT_FALSE(lights.any());
+  EXPECT_EQ(lights.bytes(), int64_t(sizeof(shared::LightConstants)));
+}
+
+// Of two triangles of one material, the one that is bright there gets most samples.
+TEST_F(PathLights, TrianglesAreMeasuredWhereTheirRadianceVaries) {
+  TestScene s;
+  scene::Material m = material(
+      "void evaluate_material(const Hit hit, inout Surface surface) {\n"
+      "  closure_emission(surface, vec3(1.0), vec3(hit_world_position(hit).x > 101.0 ? 10.0 : 0.01));\n"
+      "}\n",
+      {}, {.emission = true, .glossy = false});
+  Geometry both = floor_at(0, 1);
+  both.add(quad({2.5f, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  s.add_object(both, {s.add_material(m)}, glm::translate(glm::mat4(1), {100, 0, 0}));
+  install(s);
+  const glm::dvec4 mean = run(kBrightHalf, {{{101.25f, 0, 2}, {0, 0, -1}}}, 64, 64)[0];
+  EXPECT_GT(mean.x, 0.85);
+  EXPECT_GT(mean.y, 0.005);  // and the other is not forgotten
+}
+
+// --- hard cases ----------------------------------------------------------------------------------
+
+TEST_F(PathLights, LightOnAndInsideASurfaceIsFinite) {
+  TestScene s;
+  s.lights = one_of_each();
+  s.lights.push_back(area({0, 0, 0}, {0, 0, 1}, 10, scene::AreaShape::kRectangle, 1, 0));
+  s.add_object(quad({5, 0, 0}, {1, 0, 0}, {0, 1, 0}), {s.add_material(glow({1, 2, 3}, true))});
+  s.world = world(kSkyWithSun);
+  install(s);
+  std::vector<Place> receivers;
+  for (const scene::Light& lamp : s.lights)
+    for (const glm::vec3& n : {glm::vec3(0, 0, 1), glm::vec3(0), glm::vec3(0, -1, 0)}) {
+      receivers.push_back({lamp.position(), n});
+      receivers.push_back({lamp.position() + 0.2f * glm::vec3(lamp.object_to_world[0]), n});
+      receivers.push_back({std::nextafter(1.0f, 2.0f) * lamp.position(), n});
+    }
+  for (const glm::vec3& corner : {glm::vec3(4, -1, 0), glm::vec3(5, 0, 0), glm::vec3(6, 1, 1e-20f)})
+    receivers.push_back({corner, {0, 0, 1}});
+  for (const glm::dvec4& mean : run(kNotFinite, receivers, 8, 32)) EXPECT_EQ(mean.x, 0);
+}
+
+// At every scale, and far from the world's origin, the light is the same.
+TEST_F(PathLights, ScaleAndPlaceDoNotMatter) {
+  constexpr uint32_t kInvocations = 64, kRuns = 128;
+  const std::vector<Place> near = places(6, 1.5f);
+  for (const auto& [scale, origin] : {std::pair(1e-4f, 0.0f), {1e5f, 0.0f}, {1.0f, 1048576.0f}}) {
+    SCOPED_TRACE(scale);
+    TestScene s;
+    s.lights = one_of_each();
+    const auto moved = [&, scale = scale, origin = origin](const glm::vec3& p) {
+      return glm::round(8.0f * p) / 8.0f * scale + glm::vec3(origin, -origin, origin);
+    };
+    std::vector<double> due;
+    for (const Place& place : near) {
+      const Place rounded{glm::round(8.0f * place.position) / 8.0f, place.normal};
+      due.push_back(irradiance(quad({0, 0, 4}, {1, 0, 0}, {0, 1, 0}), 3, rounded));
+      for (const scene::Light& lamp : s.lights) due.back() += irradiance(lamp, rounded);
+    }
+    for (scene::Light& lamp : s.lights) {
+      lamp.object_to_world[3] = glm::vec4(moved(lamp.position()), 1);
+      if (lamp.type != scene::LightType::kSun) lamp.energy *= scale * scale;
+      lamp.radius *= scale;
+      lamp.size_x *= scale;
+      lamp.size_y *= scale;
+    }
+    glm::mat4 place = glm::scale(glm::mat4(1), glm::vec3(scale));
+    place[3] = glm::vec4(moved({0, 0, 0}), 1);
+    s.add_object(quad({0, 0, 4}, {1, 0, 0}, {0, 1, 0}), {s.add_material(glow({2, 3, 4}, false))}, place);
+    install(s);
+    std::vector<Place> receivers;
+    for (const Place& p : near) receivers.push_back({moved(p.position), p.normal});
+    expect_unbiased(run(kBothWays, receivers, kInvocations, kRuns), due, kInvocations * kRuns, 0.01);
+  }
+}
+
+TEST_F(PathLights, LampsWithoutShadowNeedNoRay) {
+  for (scene::Light lamp : one_of_each()) {
+    lamp.cast_shadow = false;
+    TestScene s;
+    s.lights = {lamp};
+    install(s);
+    const Place place{{0, 0, 0}, {0, 0, 1}};
+    const glm::dvec4 mean = run(kShadowless, {place}, 64, 64)[0];
+    EXPECT_EQ(mean.z, 0);
+    EXPECT_NEAR(mean.x, irradiance(lamp, place),
+                5 * std::sqrt(std::max(mean.y - mean.x * mean.x, 0.0) / (64 * 64)) + 0.004 * mean.x);
+  }
+}
+
+// --- glowing triangles ---------------------------------------------------------------------------
 
 TEST_F(PathLights, TrianglesGlowByLambertsFormula) {
   constexpr uint32_t kInvocations = 64, kRuns = 256;
@@ -481,13 +782,6 @@ TEST_F(PathLights, DarkAndHiddenTrianglesAreNoLights) {
 }
 
 // --- the world -----------------------------------------------------------------------------------
-
-// A dim sky with a sun of .01 rad and radiance 20 000 in it, towards (0, 3, 4).
-constexpr const char* kSkyWithSun =
-    "vec3 evaluate_world(vec3 direction) {\n"
-    "  bool sun = distance(normalize(direction), vec3(0.0, 0.6, 0.8)) < 0.01;\n"
-    "  return vec3(sun ? 20000.0 : 0.2 + 0.2 * direction.z);\n"
-    "}\n";
 
 TEST_F(PathLights, TheWorldGivesItsIrradiance) {
   constexpr uint32_t kInvocations = 64, kRuns = 400;

@@ -4,6 +4,7 @@
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
+#include "path_tracer/world_map.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "rasterize/emitter_lights.h"
@@ -185,6 +186,7 @@ class Shaders : public ::testing::Test {
       world.textures.resize(size_t(images));
       add(realtime::background_program(world));
       add(realtime::world_project_program(world));
+      add(path_tracer::world_map_program(world));
     }
   }
 
