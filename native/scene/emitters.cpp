@@ -102,7 +102,7 @@ std::vector<Emitter> find_emitters(const Scene& scene) {
   for (size_t i = 0; i < scene.instances().size(); ++i) {
     const Instance& instance = scene.instances()[i];
     const Mesh* mesh = scene.mesh_of(instance);
-    if (!mesh) continue;
+    if (!mesh || !(instance.visibility & shared::SEEN_BY_SCATTERED)) continue;
     const glm::dmat3 linear(instance.object_to_world);
     const double scale = similarity_scale(linear);
     for (const MaterialRange& range : mesh->ranges) {

@@ -55,8 +55,8 @@ class Emitter {
   Id material_;
 };
 
-// All emitters of a scene that have an area; materials are asked for their facts, so some of these
-// may turn out black.
+// All emitters of a scene that have an area and that scattered rays meet; materials are asked for
+// their facts, so some of these may turn out black.
 std::vector<Emitter> find_emitters(const Scene& scene);
 
 }  // namespace panoptes::scene

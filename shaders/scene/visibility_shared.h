@@ -13,5 +13,7 @@ const uint SEEN_BY_TRANSMISSION = 8u;
 const uint SEEN_BY_VOLUME_SCATTER = 16u;
 const uint SEEN_BY_SHADOW = 32u;
 const uint SEEN_BY_ALL = 63u;
+// By what light of a surface is carried on: an emitter that none of these meets lights nothing.
+const uint SEEN_BY_SCATTERED = SEEN_BY_DIFFUSE | SEEN_BY_GLOSSY | SEEN_BY_TRANSMISSION;
 
 SHARED_END

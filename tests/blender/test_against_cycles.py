@@ -163,6 +163,8 @@ def add_quad(case, column, row):
     mesh.materials.append(material)
     thing = bpy.data.objects.new(case.name, mesh)
     thing.location = (column, row, 0)
+    # A light that nobody meets needs no program that tells how it shines on others.
+    thing.visible_diffuse = thing.visible_glossy = thing.visible_transmission = False
     bpy.context.scene.collection.objects.link(thing)
 
 

@@ -105,6 +105,21 @@ TEST(Emitters, SkipsWhatHasNoArea) {
   for (float u : {0.0f, 0.5f, 0.9999999f, 1.0f}) EXPECT_LT(found[0].sample(u, 0.5f).triangle, 2u);
 }
 
+TEST(Emitters, WhatNoScatteredRayMeetsLightsNothing) {
+  TestScene setup;
+  setup.add_object(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                   {setup.add_material(emitter(glm::vec3(1)))});
+  const auto found = [&](uint32_t visibility) {
+    setup.instances[0].visibility = visibility;
+    scene::Scene scene;
+    setup.install(scene);
+    return scene::find_emitters(scene).size();
+  };
+  EXPECT_EQ(found(shared::SEEN_BY_CAMERA | shared::SEEN_BY_SHADOW | shared::SEEN_BY_VOLUME_SCATTER), 0u);
+  for (uint32_t kind : {shared::SEEN_BY_DIFFUSE, shared::SEEN_BY_GLOSSY, shared::SEEN_BY_TRANSMISSION})
+    EXPECT_EQ(found(kind), 1u);
+}
+
 TEST(Emitters, SurfacesThatDoNotEmitAreNone) {
   TestScene setup;
   setup.add_object(floor_at(0, 1), {setup.add_material(lambert())});

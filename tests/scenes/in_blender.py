@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders one scene once or more into EXR files; runs inside Blender, started by renders.py.
+"""Renders scenes into EXR files, one after the other; runs inside Blender, started by renders.py.
 
-    blender -b --factory-startup -P in_blender.py -- JOB.json
+    blender -b --factory-startup -P in_blender.py
 
-The job: {"scene": path of a .blend, "builder:NAME" or "nodes:GROUP", "lamps_alone": bool, "size": [width, height] or null,
+Takes jobs from standard input, the path of a JSON file a line, until it ends. A job: {"scene": path of a .blend, "builder:NAME" or "nodes:GROUP", "lamps_alone": bool, "size": [width, height] or null,
 "renders": [{"engine": "CYCLES" or "PANOPTES", "out": path, "samples": n, "shadows": bool, "seed": n,
-"lamp": index of the only lamp that shines, or null for all}]}. Lamps are counted in the order of their names.
-The scene is loaded once; nothing is ever saved over it. Prints "lamps: N".
+"lamp": index of the only lamp that shines, or null for all, "method": of Panoptes or null}]}. Lamps are counted in the order of their names.
+A job's scene is loaded once; nothing is ever saved over it. Prints "lamps: N" after each job. What a job leaves behind
+(Panoptes' compiled programs) makes the next one faster.
 """
 
 import json
@@ -92,7 +93,7 @@ def use_cycles(scene, render, direct_only):
 
 
 def use_panoptes(scene, render):
-    """The engine of this project with the settings that the file has, and the samples asked for."""
+    """The engine of this project with the settings that the file has, but those that the job names."""
     if "panoptes" not in sys.modules:
         sys.path.insert(0, str(ROOT / "addon"))
         import panoptes
@@ -100,10 +101,15 @@ def use_panoptes(scene, render):
     scene.render.engine = "PANOPTES"
     if render["samples"]:
         scene.panoptes.samples = render["samples"]
+    if render["method"]:
+        from panoptes import passes
+        scene.panoptes.method, scene.panoptes.seed = render["method"], render["seed"]
+        for layer in scene.view_layers:
+            passes.enable_all(layer, render["method"])
 
 
-def main():
-    job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
+def run(job):
+    """Does one job."""
     if job["scene"].startswith("builder:"):
         import builders
         builders.build(job["scene"].removeprefix("builder:"))
@@ -115,7 +121,6 @@ def main():
     scene = bpy.context.scene
     prepare(scene, job)
     shining = [made for made in lamps() if not made.hide_render]
-    print("lamps:", len(shining), flush=True)
     for render in job["renders"]:
         for index, made in enumerate(shining):
             made.hide_render = render["lamp"] not in (None, index)
@@ -125,6 +130,8 @@ def main():
             use_panoptes(scene, render)
         scene.render.filepath = render["out"]
         bpy.ops.render.render(write_still=True)
+    print("lamps:", len(shining), flush=True)
 
 
-main()
+for line in sys.stdin:
+    run(json.loads(Path(line.strip()).read_text()))

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders scenes in Blender for the comparisons, and keeps Cycles' pictures for the next time.
 
-Runs in the system's Python; each call starts one Blender that renders a list of pictures (in_blender.py).
+Runs in the system's Python, with one Blender beside it that renders lists of pictures (in_blender.py).
 Cycles' pictures are kept in build/reference-cache under a key of everything that they depend on: the
 scene's bytes, the scripts, the settings and Blender's version. Panoptes' pictures are never kept.
 """
 
+import atexit
+import collections
 import functools
 import hashlib
 import json
@@ -13,6 +15,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -65,9 +68,13 @@ def _key(scene, request):
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def picture(engine, samples=None, shadows=True, seed=1, lamp=None):
-    """One entry of a list for `render`; lamp: the index of the only lamp that shines, None for all."""
-    return {"engine": engine, "samples": samples, "shadows": shadows, "seed": seed, "lamp": lamp}
+def picture(engine, samples=None, shadows=True, seed=1, lamp=None, method=None):
+    """One entry of a list for `render`.
+
+    seed: of Cycles, and of Panoptes with a method. lamp: the index of the only lamp that shines, None for all.
+    method: of Panoptes, with every pass that it fills; None keeps the file's own settings.
+    """
+    return {"engine": engine, "samples": samples, "shadows": shadows, "seed": seed, "lamp": lamp, "method": method}
 
 
 def render(name, pictures, lamps_alone=False, size=None):
@@ -101,16 +108,51 @@ def render(name, pictures, lamps_alone=False, size=None):
         return [images.read_passes(out) for out in outs], int(count_file.read_text())
 
 
+_blender = None
+
+
+def _running_blender():
+    """The Blender that does the jobs; a new one where there is none or the last has ended."""
+    global _blender
+    if _blender is None or _blender.poll() is not None:
+        _blender = subprocess.Popen(
+            [BLENDER, "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "in_blender.py"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return _blender
+
+
+@atexit.register
+def _end():
+    """Ends the Blender that has done the jobs."""
+    if _blender is not None and _blender.poll() is None:
+        _blender.stdin.close()
+        _blender.stdout.read()
+        _blender.wait()
+
+
 def _run(name, job, folder):
     """Runs the job in Blender; returns the number of lamps that it printed."""
     path = Path(folder) / "job.json"
     path.write_text(json.dumps(job))
+    blender, late, tail = _running_blender(), threading.Event(), collections.deque(maxlen=12)
+
+    def stop():
+        late.set()
+        blender.kill()
+
+    timer = threading.Timer(TIME_LIMIT_SECONDS, stop)
+    timer.start()
     try:
-        done = subprocess.run([BLENDER, "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "in_blender.py",
-                               "--", path], capture_output=True, text=True, timeout=TIME_LIMIT_SECONDS)
-    except subprocess.TimeoutExpired:
-        raise RenderFailed(f"{name}: Blender was not done after {TIME_LIMIT_SECONDS} s; render it by hand.") from None
-    if done.returncode:
-        tail = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()][-12:]
-        raise RenderFailed(f"{name}: Blender left with status {done.returncode}:\n" + "\n".join(tail))
-    return next(line.split()[1] for line in done.stdout.splitlines() if line.startswith("lamps:"))
+        print(path, file=blender.stdin, flush=True)
+        for line in blender.stdout:
+            if line.startswith("lamps:"):
+                return line.split()[1]
+            if line.strip():
+                tail.append(line.rstrip())
+    except BrokenPipeError:
+        tail.append("It ended before the job.")
+    finally:
+        timer.cancel()
+    if late.is_set():
+        raise RenderFailed(f"{name}: Blender was not done after {TIME_LIMIT_SECONDS} s; render it by hand.")
+    raise RenderFailed(f"{name}: Blender left with status {blender.wait()}:\n" + "\n".join(tail))
