@@ -24,7 +24,7 @@ layout(std430, binding = 0) writeonly buffer Rays { TracedRay rays[]; };
 layout(std430, binding = 1) writeonly buffer States { uvec4 new_states[]; };
 layout(std430, binding = 2) buffer Counters { uint going_count, shadow_count; };
 layout(std430, binding = 3) writeonly buffer Going { uint going[]; };
-layout(std430, binding = 4) writeonly buffer Passed { vec4 passed[]; };
+layout(std430, binding = 4) writeonly buffer PassedOn { vec4 passed[]; };
 #if LIGHTS
 layout(std430, binding = 5) writeonly buffer ShadowRays { TracedRay shadow_rays[]; };
 layout(std430, binding = 7) writeonly buffer ShadowList { uint shadow_list[]; };
