@@ -18,3 +18,17 @@ vec3 environment_reflectance(vec3 f0, vec3 f90, float roughness, float nv) {
   float grazing = clamp(1.04 * a + r.w, 0.0, all);
   return f0 * (all - grazing) + f90 * grazing;
 }
+
+// The same with masking of both directions apart, by alpha: a fit of E to its quadrature (sampled
+// visible normals, 25 x 39 points), off by at most .34 %.
+float ggx_separable_albedo(float alpha, float mu) {
+  vec4 a = vec4(1.0, alpha, alpha * alpha, alpha * alpha * alpha);
+  float q = mu / max(mu + alpha, 1.0e-6);
+  float e = dot(a, vec4(-1.9375, -6.6435, 4.4493, -3.3701));
+  e = e * q + dot(a, vec4(2.9017, 15.7127, 3.4178, -15.0613));
+  e = e * q + dot(a, vec4(-0.3839, -14.6725, -3.175, 16.7594));
+  e = e * q + dot(a, vec4(-0.5256, 6.0931, -1.46, -4.3062));
+  e = e * q + dot(a, vec4(0.008, -0.7585, -0.4535, 0.6573));
+  e = e * q + dot(a, vec4(0.9341, -0.0314, -0.5152, 0.2241));
+  return clamp(e, 0.05, 1.0);
+}

@@ -47,6 +47,7 @@ float specular_amount(vec3 normal_incidence, vec3 grazing) {
 
 #ifdef LOBES_APART
 #include "gpu_scene/lobes_apart.glsl"
+#include "gpu_scene/multiscatter.glsl"
 #else
 #include "gpu_scene/lobes_merged.glsl"
 #endif
@@ -87,8 +88,6 @@ void finish_surface(Hit hit, inout Surface s) {
 #endif
 }
 
-// --- closures ---------------------------------------------------------------------------------------
-
 void add_normal(inout Surface s, vec3 weight, vec3 normal) {
   float amount = luminance(abs(weight));
   s.weight += amount;
@@ -103,6 +102,31 @@ void closure_diffuse(inout Surface s, vec3 weight, vec3 color, float roughness, 
 void closure_glossy(inout Surface s, vec3 weight, vec3 color, float roughness, vec3 normal) {
   add_specular(s, weight * color, weight * color, 1.0, clamp(roughness, 0.0, 1.0), normal);
   add_normal(s, weight, normal);
+}
+
+// Several bounces between facets; Real-time has the first alone.
+vec3 more_bounces(vec3 f0, vec3 f90, float roughness, float cosine) {
+#ifdef LOBES_APART
+  return reflected_bounces(f0, f90, roughness, cosine);
+#else
+  return vec3(1.0);
+#endif
+}
+
+float more_bounces_of_glass(inout Surface s, float reflected, float roughness, float ior,
+                            float cosine) {
+#ifdef LOBES_APART
+  return glass_bounces(reflected, roughness, ior, cosine, s.seed);
+#else
+  return 1.0;
+#endif
+}
+
+void closure_glossy_multiscatter(Hit hit, inout Surface s, vec3 weight, vec3 color, float roughness,
+                                 vec3 normal) {
+  roughness = clamp(roughness, 0.0, 1.0);
+  color *= more_bounces(color, color, roughness, dot(normal, hit.view));
+  closure_glossy(s, weight, color, roughness, normal);
 }
 
 void closure_velvet(inout Surface s, vec3 weight, vec3 color, float sigma, vec3 normal) {
@@ -127,6 +151,14 @@ void closure_glass(Hit hit, inout Surface s, vec3 weight, vec3 color, float roug
   add_normal(s, weight, normal);
 }
 
+void closure_glass_multiscatter(Hit hit, inout Surface s, vec3 weight, vec3 color, float roughness,
+                                float ior, vec3 normal) {
+  float cosine = dot(normal, hit.view), relative = relative_ior(hit.backfacing, ior);
+  color *= more_bounces_of_glass(s, fresnel_dielectric(cosine, relative), clamp(roughness, 0.0, 1.0),
+                                 relative, cosine);
+  closure_glass(hit, s, weight, color, roughness, ior, normal);
+}
+
 void closure_refraction(Hit hit, inout Surface s, vec3 weight, vec3 color, float roughness, float ior,
                         vec3 normal) {
   add_transmission(s, weight * color, relative_ior(hit.backfacing, ior), clamp(roughness, 0.0, 1.0),
@@ -140,106 +172,4 @@ void closure_transparent(inout Surface s, vec3 weight, vec3 color) {
 
 void closure_emission(inout Surface s, vec3 weight, vec3 radiance) {
   s.emission += weight * radiance;
-}
-
-// --- Principled -------------------------------------------------------------------------------------
-
-struct Principled {
-  vec3 base_color, subsurface_color;
-  float subsurface, metallic, roughness, diffuse_roughness, specular, transmission;
-  float transmission_roughness, ior, alpha;
-  vec3 specular_tint;  // three times the same number before Blender 4.0
-  vec3 emission;
-  float sheen, sheen_roughness;
-  vec3 sheen_tint;     // as specular_tint
-  float coat, coat_roughness, coat_ior;
-  vec3 coat_tint, coat_normal, normal;
-  vec3 view;         // Hit::view
-  bool backfacing;   // Hit::backfacing
-};
-
-Principled principled_defaults(Hit hit) {
-  return Principled(vec3(0.8), vec3(0.8), 0.0, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 1.45, 1.0, vec3(0.0),
-                    vec3(0.0), 0.0, 0.5, vec3(0.5), 0.0, 0.03, 1.5, vec3(1.0), hit.normal,
-                    hit.normal, hit.view, hit.backfacing);
-}
-
-// Alpha, emission and normal, which both generations share; returns the weight of what remains.
-vec3 principled_common(inout Surface s, vec3 weight, Principled p) {
-  s.transparency += weight * (1.0 - p.alpha);
-  s.emission += weight * p.alpha * p.emission;
-  add_normal(s, weight * p.alpha, p.normal);
-  return weight * p.alpha;
-}
-
-// Blender before 4.0.
-void closure_principled_v3(inout Surface s, vec3 weight, Principled p) {
-  weight = principled_common(s, weight, p);
-  p.metallic = clamp(p.metallic, 0.0, 1.0);
-  p.roughness = clamp(p.roughness, 0.0, 1.0);
-  float transmitted = clamp(p.transmission, 0.0, 1.0) * (1.0 - p.metallic);
-  float dielectric = (1.0 - p.metallic) * (1.0 - clamp(p.transmission, 0.0, 1.0));
-
-  // Burley's diffuse lobe; light that wanders below the surface leaves where it enters.
-  add_burley(s, weight * dielectric * mix(p.base_color, p.subsurface_color, p.subsurface),
-             p.roughness, p.normal);
-  float brightness = dot(p.base_color, vec3(0.3, 0.6, 0.1));  // as Disney's BRDF has it
-  vec3 hue = brightness > 0.0 ? p.base_color / brightness : vec3(1.0);
-  add_sheen(s, weight * dielectric * p.sheen * mix(vec3(1.0), hue, p.sheen_tint), SHEEN_SCHLICK,
-            p.normal);
-
-  vec3 f0 = mix(0.08 * p.specular * mix(vec3(1.0), hue, p.specular_tint), p.base_color, p.metallic);
-  float root = sqrt(max(0.08 * p.specular, 0.0));
-  if (p.specular > 0.0 || p.metallic > 0.0)
-    add_specular(s, weight * (1.0 - transmitted) * f0, weight * (1.0 - transmitted),
-                 2.0 / max(1.0 - root, 1.0e-3) - 1.0, p.roughness, p.normal);
-
-  float ior = relative_ior(p.backfacing, p.ior);
-  float reflected = fresnel_dielectric(dot(p.normal, p.view), ior);
-  vec3 mirrored = weight * transmitted * reflected;
-  add_specular(s, mirrored * mix(vec3(1.0), p.base_color, p.specular_tint), mirrored, ior,
-               p.roughness, p.normal);
-  add_transmission(s, weight * transmitted * (1.0 - reflected) * p.base_color, ior,
-                   1.0 - (1.0 - p.roughness) * (1.0 - clamp(p.transmission_roughness, 0.0, 1.0)),
-                   p.normal);
-  // Negative: the distribution of the Disney BRDF.
-  add_coat(s, luminance(weight) * 0.25 * p.coat, -clamp(p.coat_roughness, 0.0, 1.0), p.coat_normal);
-}
-
-// Blender 4.0 and later: layers from the coat down, each with what the ones above let through.
-void closure_principled_v4(inout Surface s, vec3 weight, Principled p) {
-  weight = principled_common(s, weight, p);
-  p.metallic = clamp(p.metallic, 0.0, 1.0);
-  p.roughness = clamp(p.roughness, 0.0, 1.0);
-
-  float coat = max(p.coat, 0.0);
-  float coat_cosine = max(dot(p.coat_normal, p.view), 0.0);
-  add_coat(s, luminance(weight) * coat, clamp(p.coat_roughness, 0.0, 1.0), p.coat_normal);
-  // The way through the coat and back is longer at a slant, by the refracted direction.
-  float coat_ior = max(p.coat_ior, 1.0);
-  float within = sqrt(max(1.0 - (1.0 - coat_cosine * coat_cosine) / (coat_ior * coat_ior), 1.0e-4));
-  weight *= mix(vec3(1.0), pow(max(p.coat_tint, vec3(0.0)), vec3(1.0 / within)), min(coat, 1.0));
-  weight *= 1.0 - min(coat, 1.0) * fresnel_dielectric(coat_cosine, coat_ior);
-  add_sheen(s, weight * p.sheen * p.sheen_tint, clamp(p.sheen_roughness, 0.0, 1.0), p.normal);
-
-  float metal = p.metallic, glass = (1.0 - metal) * clamp(p.transmission, 0.0, 1.0);
-  float dielectric = (1.0 - metal) * (1.0 - clamp(p.transmission, 0.0, 1.0));
-  add_specular(s, weight * metal * p.base_color, weight * metal, 1.5, p.roughness, p.normal);
-
-  float ior = relative_ior(p.backfacing, p.ior);
-  float reflected = fresnel_dielectric(dot(p.normal, p.view), ior);
-  vec3 mirrored = weight * glass * reflected * p.specular_tint;
-  add_specular(s, mirrored, mirrored, 1.0, p.roughness, p.normal);
-  add_transmission(s, weight * glass * (1.0 - reflected) * p.base_color, ior, p.roughness, p.normal);
-
-  float f0 = min(2.0 * p.specular * reflectance_from_ior(max(p.ior, 1.0e-3)), 0.99);
-  float root = sqrt(max(f0, 0.0));
-  add_specular(s, weight * dielectric * f0 * p.specular_tint, weight * dielectric * (f0 > 0.0 ? 1.0 : 0.0),
-               (1.0 + root) / (1.0 - root), p.roughness, p.normal);
-  // The base gets what the reflection on it leaves.
-  vec3 reflected_above = environment_reflectance(f0 * p.specular_tint, vec3(f0 > 0.0 ? 1.0 : 0.0),
-                                                 p.roughness, max(dot(p.normal, p.view), 0.0));
-  float below = 1.0 - max(max(reflected_above.r, reflected_above.g), reflected_above.b);
-  add_oren_nayar(s, weight * dielectric * max(below, 0.0) * p.base_color, p.diffuse_roughness,
-                 p.normal);
 }

@@ -18,4 +18,4 @@ vec4 param(int i) { return texelFetch(material_params, int(material_block.x) + i
 
 #include "gpu_scene/images.glsl"
 #include "gpu_scene/normal_maps.glsl"
-#include "gpu_scene/closures.glsl"
+#include "gpu_scene/principled.glsl"

@@ -6,7 +6,7 @@
 // refraction never above it: the density there is 0. Light that comes from there is shaded all the
 // same, for it is by the smooth normals that a mesh looks smooth.
 #include "path_tracer/lobes.glsl"
-#include "path_tracer/microfacet.glsl"
+#include "base/microfacet.glsl"
 
 const uint BOUNCE_DIFFUSE = 0u;
 const uint BOUNCE_GLOSSY = 1u;        // reflected

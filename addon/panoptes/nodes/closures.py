@@ -171,6 +171,11 @@ def _roughness(use):
     return _float(use, 'Roughness', '0.0')
 
 
+def is_multiscatter(use):
+    """Tell whether light is to be scattered several times between the facets of a closure."""
+    return getattr(use.node, 'distribution', '') == 'MULTI_GGX'
+
+
 @closure('BSDF_DIFFUSE')
 def diffuse(use, weight):
     """Diffuse BSDF."""
@@ -185,8 +190,11 @@ def glossy(use, weight):
     use.compiler.facts['glossy'] = True
     if getattr(use.node, 'distribution', '') in ('BECKMANN', 'ASHIKHMIN_SHIRLEY'):
         use.compiler.warn(use.node, 'GGX', 'has one distribution only')
+    function = 'closure_glossy(surface'
+    if is_multiscatter(use):
+        function = 'closure_glossy_multiscatter(hit, surface'
     use.compiler.statement(
-        f'closure_glossy(surface, {weight}, {_color(use)}, {_roughness(use)}, {use.normal()});')
+        f'{function}, {weight}, {_color(use)}, {_roughness(use)}, {use.normal()});')
 
 
 def _refractive(use, weight, function):
@@ -200,7 +208,8 @@ def _refractive(use, weight, function):
 def glass(use, weight):
     """Glass BSDF."""
     use.compiler.facts['glossy'] = True
-    _refractive(use, weight, 'closure_glass')
+    _refractive(use, weight,
+                'closure_glass_multiscatter' if is_multiscatter(use) else 'closure_glass')
 
 
 @closure('BSDF_REFRACTION')

@@ -2,7 +2,7 @@
 """The Principled BSDF, both generations of its sockets."""
 
 from .. import compat
-from .closures import closure, is_black
+from .closures import closure, is_black, is_multiscatter
 from .values import convert
 
 # Fields of the GLSL struct Principled that are read when their weight is not an unlinked 0: the
@@ -66,6 +66,8 @@ def principled(use, weight):
         strength = convert(use.value('Emission Strength'), 'float')
         compiler.note_emission(color, strength, *scales)
         assign('emission', f'{color.code} * {strength.code}')
+    if is_multiscatter(use):
+        assign('multiscatter', 'true')
     assign('normal', use.normal())
     if runs('coat'):
         assign('coat_normal', use.normal(names['coat_normal']))
