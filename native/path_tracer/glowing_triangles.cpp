@@ -22,9 +22,6 @@ constexpr float kLeastShare = 1.0f / 16;
 // Asked at once, which bounds the memory that asking takes.
 constexpr size_t kProbesAtOnce = 1 << 20;
 
-constexpr uint32_t kScattered =
-    shared::SEEN_BY_DIFFUSE | shared::SEEN_BY_GLOSSY | shared::SEEN_BY_TRANSMISSION;
-
 // Triangles of one material of one instance.
 struct Part {
   const scene::Instance* instance;
@@ -46,7 +43,7 @@ std::vector<Part> glowing_parts(const scene::Scene& scene, const gpu_scene::GpuS
     for (const scene::MaterialRange& range : mesh->ranges) {
       const scene::Id id = scene.material_of(instance, range.slot);
       const auto material = scene.materials().find(id);
-      if (range.count > 0 && (instance.visibility & kScattered) && material != scene.materials().end() &&
+      if (range.count > 0 && (instance.visibility & shared::SEEN_BY_SCATTERED) && material != scene.materials().end() &&
           material->second.facts.emission)
         parts.push_back({&instance, mesh, range, gpu.place_of(i), primitive, id,
                          material->second.facts.emission_varies});

@@ -1,21 +1,19 @@
 // The lamps that a ray passes: those with an extent, found in a tree of their bounds.
 
-// Lamps that are weighed one by one; where a ray passes the bounds of more at once, one of the rest, at
-// random, stands for all of these.
-const uint MOST_WEIGHED = 32u;
-
-bool meets_sun(LightRecord l, vec3 direction) {
-  float cosine = -dot(direction, l.axis.xyz);
-  vec3 off = direction / cosine + l.axis.xyz;
-  return cosine > 0.0 && dot(off, off) < l.axis.w * l.axis.w;
-}
+// Lamps that are weighed one by one; where a ray passes more at once, one of the rest, at random, stands
+// for all of these.
+const uint MOST_WEIGHED = 4u;
 
 // What of a lamp with an extent the ray sees before t_max; radiance 0 where it passes by.
 Emitted lamp_on_ray(LightRecord l, vec3 from, vec3 direction, float t_max) {
   uint kind = record_kind(l);
   const Emitted NOTHING = Emitted(vec3(0.0), 0.0);
-  if (kind == KIND_SUN)
-    return meets_sun(l, direction) ? emitted_by_sun(l, -dot(direction, l.axis.xyz)) : NOTHING;
+  if (kind == KIND_SUN) {
+    float cosine = -dot(direction, l.axis.xyz);
+    vec3 off = direction / cosine + l.axis.xyz;
+    bool met = cosine > 0.0 && dot(off, off) < l.axis.w * l.axis.w;
+    return met ? emitted_by_sun(l, cosine) : NOTHING;
+  }
   vec3 apart = from - l.place.xyz, normal = l.axis.xyz;
   float length2 = dot(apart, apart);
   if (kind == KIND_POINT) normal = length2 > 0.0 ? apart * inversesqrt(length2) : -direction;
@@ -56,42 +54,46 @@ vec3 weighed(uint light, vec3 from, vec3 normal, vec3 direction, float t_max, fl
 }
 
 struct Passed {
-  uint lights[MOST_WEIGHED + 1u];  // the last stands for all that did not fit
+  uvec4 lights;  // the first
+  uint other;    // one of the rest
   uint count;
 };
 
-void pass_lamp(uint light, vec3 direction, inout Passed passed) {
-  uint place = min(passed.count, MOST_WEIGHED);
-  ++passed.count;
-  if (place == MOST_WEIGHED) {
-    uint seed = floatBitsToUint(direction.x) ^ hash(floatBitsToUint(direction.y) ^ hash(light));
-    if (unit_float(hash(seed)) * float(passed.count - MOST_WEIGHED) >= 1.0) return;
+void pass_lamp(uint light, vec3 from, vec3 direction, float t_max, inout Passed passed) {
+  if (lamp_on_ray(fetch_record(light), from, direction, t_max).radiance == vec3(0.0)) return;
+  uint place = passed.count++;
+  if (place < MOST_WEIGHED) {
+    passed.lights[place] = light;
+    return;
   }
-  passed.lights[place] = light;
+  uint seed = floatBitsToUint(direction.x) ^ hash(floatBitsToUint(direction.y) ^ hash(light));
+  if (unit_float(hash(seed)) * float(passed.count - MOST_WEIGHED) < 1.0) passed.other = light;
 }
 
-// The lists are gathered first: llvmpipe skips no arithmetic and would weigh at every node.
+// They are weighed afterwards: llvmpipe skips no arithmetic and would walk down the tree of all lights at
+// every node.
 vec3 radiance_of_lamps(vec3 from, vec3 normal, vec3 direction, float t_max, float scattering_pdf) {
-  Passed passed;
-  passed.count = 0u;
+  Passed passed = Passed(uvec4(0u), 0u, 0u);
   vec3 inverse = 1.0 / mix(direction, vec3(1.0e-30), equal(direction, vec3(0.0)));
   uint node = light_constants.first_seen;
   while (node < light_constants.end_seen) {
     uvec4 words0 = node_texel(int(node), 0), words1 = node_texel(int(node), 1);
     bool met = meets_bounds(words0, words1, from, inverse, t_max);
-    if (met && (words1.w & NODE_LEAF) != 0u) pass_lamp(words1.w & NODE_INDEX, direction, passed);
+    if (met && (words1.w & NODE_LEAF) != 0u)
+      pass_lamp(words1.w & NODE_INDEX, from, direction, t_max, passed);
     node = met ? node + 1u : node_texel(int(node), 2).w;
   }
 #if LIGHT_SUNS
   if (t_max >= FAR)
-    for (uint light = 0u; light < light_constants.seen_suns; ++light) {
-      if (meets_sun(fetch_record(light), direction)) pass_lamp(light, direction, passed);
-    }
+    for (uint light = 0u; light < light_constants.seen_suns; ++light)
+      pass_lamp(light, from, direction, t_max, passed);
 #endif
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < min(passed.count, MOST_WEIGHED + 1u); ++i) {
-    vec3 radiance = weighed(passed.lights[i], from, normal, direction, t_max, scattering_pdf);
-    sum += i < MOST_WEIGHED ? radiance : radiance * float(passed.count - MOST_WEIGHED);
+    bool rest = i == MOST_WEIGHED;
+    vec3 radiance = weighed(rest ? passed.other : passed.lights[i], from, normal, direction, t_max,
+                            scattering_pdf);
+    sum += rest ? radiance * float(passed.count - MOST_WEIGHED) : radiance;
   }
   return sum;
 }
