@@ -37,6 +37,11 @@ std::vector<float> Job::read(film::Pass pass) const {
   return found->second;
 }
 
+std::shared_ptr<const film::Pieces> Job::pieces() const {
+  std::lock_guard lock(mutex_);
+  return pieces_;
+}
+
 RenderStats Job::stats() const {
   std::lock_guard lock(mutex_);
   return stats_;

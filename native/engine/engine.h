@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/request.h"
+#include "film/pieces.h"
 #include "gl/context.h"
 #include "scene/scene.h"
 
@@ -37,6 +38,8 @@ class Job {
   // A pass, channels a pixel, rows bottom to top. Live jobs offer Combined after each sample, all
   // jobs offer everything at their end. Throws Error when it is not there.
   std::vector<float> read(film::Pass pass) const;
+  // What the finished render kept for merging; null where the request did not ask for it.
+  std::shared_ptr<const film::Pieces> pieces() const;
   RenderStats stats() const;
 
  private:
@@ -54,6 +57,7 @@ class Job {
   std::string error_, status_ = "waiting";
   uint32_t samples_ready_ = 0;
   std::map<film::Pass, std::vector<float>> pixels_;
+  std::shared_ptr<const film::Pieces> pieces_;
   RenderStats stats_;
 };
 

@@ -6,6 +6,7 @@
 #include "plan/plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 
 namespace panoptes::engine {
@@ -30,6 +31,15 @@ bool traces_paths(const RenderRequest& request) {
 
 // About the rays of a path, for the choice of a structure before any was traced.
 constexpr int64_t kRaysOfPath = 6;
+
+// How many samples share a pixel's footprint with this one. Where ranges are to be merged nobody knows
+// how many there will be: then it is as many as there are up to the end of its octave.
+uint32_t sharing(const RenderRequest& request, uint32_t index) {
+  return request.pieces ? std::bit_ceil(std::max(index + 1, film::kBlock)) : request.last_sample;
+}
+
+// Whether the picture will have no other sample than its first.
+bool single(const RenderRequest& request) { return request.last_sample == 1 && !request.pieces; }
 
 // The passes of an effect have its name, or begin with it: "structure_lists".
 bool belongs(const std::string& pass, const std::string& effect) {
@@ -106,7 +116,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
         programs_.get(realtime::background_program(world));
       });
   // Samples that come after others are part of a picture of many, even if only one is asked for.
-  realtime_.begin(request.camera, plan, settings, request.last_sample == 1, scene, gpu_scene_);
+  realtime_.begin(request.camera, plan, settings, single(request), scene, gpu_scene_);
 }
 
 void RenderThread::begin_paths(const RenderRequest& request, const plan::Effects& plan,
@@ -131,7 +141,7 @@ void RenderThread::render_sample(const Job& job, uint32_t index) {
     return;
   }
   if (request.debug_picture == ray_picture::Kind::kNone) {
-    realtime_.render_sample(index, request.first_sample, request.last_sample, gpu_scene_, film_,
+    realtime_.render_sample(index, request.first_sample, sharing(request, index), gpu_scene_, film_,
                             job.cancelled_);
     return;
   }
@@ -157,14 +167,15 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   {
     std::lock_guard lock(mutex);
     gpu_scene_.update(scene);
-    plan = plan::make_plan(scene.facts(), {int(request.last_sample), request.soft_shadows,
+    const int samples = single(request) ? 1 : std::max(int(request.last_sample), 2);
+    plan = plan::make_plan(scene.facts(), {samples, request.soft_shadows,
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes, request.debug_picture, paths,
                                            {request.paths, request.camera.lens.radius > 0}});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
-                {.moments = wanted > 1 && !debug});
+                {.moments = wanted > 1 && !debug, .pieces = request.pieces});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
     if (debug || paths) traced_.update(scene, gpu_scene_, programs_, timer_);
     if (paths) begin_paths(request, plan, scene);
@@ -192,6 +203,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     film_.end_sample(request.first_sample + done);
     ++done;
     gl::check_errors("render");
+    if (!film_.all_active() && film_.active_count() == 0) break;
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
       film::PassSet combined;
       combined.set(size_t(film::Pass::kCombined));
@@ -224,9 +236,17 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
   stats.estimated_error = film_.estimated_error();
+  if (const uint32_t spoiled = film_.spoiled_samples(); spoiled > 0)
+    warnings.push_back(fmt::format("{} samples of pixels were infinite or no number and count as black: "
+                                   "look for extreme values in materials, lamps and the world",
+                                   spoiled));
   stats.warnings = std::move(warnings);
   job.set_status("done", 1);
+  std::shared_ptr<const film::Pieces> pieces;
+  if (request.pieces)
+    pieces = std::make_shared<film::Pieces>(film_.take_pieces(request.exposure));
   std::lock_guard lock(job.mutex_);
+  job.pieces_ = std::move(pieces);
   job.stats_ = std::move(stats);
 }
 

@@ -47,6 +47,9 @@ void RenderRequest::check() const {
   if (!std::isfinite(exposure)) fail("the film's exposure is not finite: set it to 1");
   if (!(time_budget >= 0) || !(noise_threshold >= 0))
     fail("time budget and noise threshold must not be negative: set them to 0 to switch them off");
+  if (pieces && noise_threshold > 0)
+    fail("pictures with a noise threshold cannot be merged, since their pixels have different samples: "
+         "set the noise threshold to 0");
   if (!ray_picture::known(debug_picture))
     fail("there is no debug picture number {}: choose one of {}", int(debug_picture),
          fmt::join(ray_picture::kKindNames, ", "));

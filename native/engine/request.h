@@ -30,6 +30,8 @@ struct RenderRequest {
   float exposure = 1.0f;        // multiplies light passes
   bool force_all_effects = false;
   bool live = false;            // Combined can be read while the frame renders
+  // Keeps what merges with other ranges of samples. Each sample then looks the same in every range.
+  bool pieces = false;
   int shadow_resolution = 2048; // texels a side, 16 .. 8192
   bool soft_shadows = true;
   bool filter_penumbrae = false;  // by blocker distance, instead of a point of each lamp a sample

@@ -171,10 +171,14 @@ uint32_t Film::spoiled_samples() const {
   return count;
 }
 
-SampleSums Film::take_sums() {
+Pieces Film::take_pieces(float exposure) {
   if (block_samples_ > 0) finish_block();
+  Pieces pieces{width_, height_, exposure, passes_, std::exchange(blocks_, {}), {}};
+  for (int i = 0; i < kPassCount; ++i)
+    if (passes_[size_t(i)] && kPasses[size_t(i)].kind == PassKind::kFirst)
+      pieces.firsts[Pass(i)] = read(Pass(i), exposure);
   counts_ = {};
-  return std::exchange(blocks_, {});
+  return pieces;
 }
 
 }  // namespace panoptes::film

@@ -5,7 +5,7 @@
 
 #include "film/average.h"
 #include "film/noise.h"
-#include "film/sample_sums.h"
+#include "film/pieces.h"
 #include "gl/handles.h"
 #include "gl/program.h"
 
@@ -16,7 +16,7 @@ namespace panoptes::film {
 
 struct FilmOptions {
   bool moments = false;  // of brightness, for the estimated error
-  bool pieces = false;   // take_sums() can be merged with what comes before
+  bool pieces = false;   // take_pieces() can be merged with what comes before
   // Pixels get no more samples once their noise is below this (see noise.h), after at least one
   // block; 0: all get all samples. Needs moments, and an integrator that asks for active_pixels().
   double noise_threshold = 0;
@@ -50,9 +50,8 @@ class Film {
   // Samples of pixels that were infinite or no number, and count as black.
   uint32_t spoiled_samples() const;
 
-  const Layout& layout() const { return layout_; }
-  // All samples, for merging; the film is then as after start().
-  SampleSums take_sums();
+  // All samples, for merging; the film has none from then on.
+  Pieces take_pieces(float exposure);
 
   int width() const { return width_; }
   int height() const { return height_; }

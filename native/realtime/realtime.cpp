@@ -165,23 +165,35 @@ void Realtime::project_world(const scene::World& world, const gpu_scene::GpuScen
   store(world_block_, coefficients.data(), sizeof coefficients);
 }
 
-void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
-                             const gpu_scene::GpuScene& gpu, film::Film& film,
-                             const std::atomic<bool>& cancelled) {
+shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
   // A single sample looks through the pixel's centre; many follow the pixel filter.
-  const uint32_t count = last - first;
-  const bool centre = count == 1 && first == 0;
   const glm::vec2 u = film::sample_point(index, settings_.seed, kPixelDimension);
   const glm::dvec2 jitter =
-      centre ? glm::dvec2(0) : glm::dvec2(film::blackman_harris_offset(u.x, settings_.filter_width),
-                                          film::blackman_harris_offset(u.y, settings_.filter_width));
+      single_ ? glm::dvec2(0)
+              : glm::dvec2(film::blackman_harris_offset(u.x, settings_.filter_width),
+                           film::blackman_harris_offset(u.y, settings_.filter_width));
   shared::View view = gpu_scene::camera_view(camera_, jitter);
   view.size.z = int(index);
   view.size.w = int(settings_.seed);
-  view.alpha = {centre ? kCutAlpha : -1.0f, 0, 0, 0};
+  view.alpha = {single_ ? kCutAlpha : -1.0f, 0, 0, 0};
   // N samples share the pixel's footprint, so each may look sqrt(N) times finer.
-  view.filtering.x = -0.5f * std::log2(float(last));
+  view.filtering.x = -0.5f * std::log2(float(sharing));
+  return view;
+}
 
+void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
+                             const gpu_scene::GpuScene& gpu, film::Film& film,
+                             const std::atomic<bool>& cancelled) {
+  if (cascades_ && index == first && first > 0) {
+    // The maps follow what the picture's first sample sees, in whatever ranges it is rendered.
+    const shared::View view = sample_view(0, sharing);
+    view_block_.set(view);
+    g_buffer_.rasterize(gpu, programs_, timer_);
+    g_buffer_.shade(gpu, programs_, timer_);
+    find_cascades(view);
+    stop_if(cancelled);
+  }
+  const shared::View view = sample_view(index, sharing);
   if (index == first && depth_) {
     // Where a surface is half transparent or more, depth is that of what lies behind.
     shared::View cut = view;
@@ -191,12 +203,12 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t last,
     write_depth(gpu, film);
   }
   view_block_.set(view);
-  if (!(index == first && depth_ && (!alpha_ || centre)))
+  if (!(index == first && depth_ && (!alpha_ || single_)))
     g_buffer_.rasterize(gpu, programs_, timer_);
   stop_if(cancelled);
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
-  if (cascades_ && index == first) find_cascades(view);
+  if (cascades_ && index == 0) find_cascades(view);
   if (lamps_) add_lamps(index, view, gpu, cancelled);
 
   if (background_) {

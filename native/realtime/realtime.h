@@ -55,14 +55,18 @@ class Realtime {
   void begin(const gpu_scene::Camera& camera, const plan::Effects& plan, const Settings& settings,
              bool single, const scene::Scene& scene, const gpu_scene::GpuScene& gpu);
 
-  // Adds sample `index` (of first .. last - 1) to the film. Throws Cancelled when `cancelled` says so.
-  void render_sample(uint32_t index, uint32_t first, uint32_t last, const gpu_scene::GpuScene& gpu,
-                     film::Film& film, const std::atomic<bool>& cancelled);
+  // Adds sample `index` of a frame that begins with sample `first` to the film; `sharing` samples
+  // share a pixel's footprint. Throws Cancelled when `cancelled` says so.
+  void render_sample(uint32_t index, uint32_t first, uint32_t sharing,
+                     const gpu_scene::GpuScene& gpu, film::Film& film,
+                     const std::atomic<bool>& cancelled);
 
  private:
   void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);
   void dispatch_pixels() const;
   void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
+  // What the camera sees in sample `index`.
+  shared::View sample_view(uint32_t index, uint32_t sharing) const;
   void find_cascades(const shared::View& view);
   rasterize::LightSet place(uint32_t index, const shared::View& view,
                             const gpu_scene::GpuScene& gpu);
