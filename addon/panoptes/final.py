@@ -43,12 +43,16 @@ def render(engine, depsgraph):
             names = [name for name in result.pass_names if name in filled]
             request['passes'] = names or ['Combined']
             request['live'] = not bpy.app.background
+            request['pieces'] = session.keep_pieces and requests.can_merge(request, warn)
             job = mirror.engine.render(request)
             cancelled = _follow(engine, job, result, request['settings'])
             # Who cancels keeps what there is.
             finished = not cancelled or job.samples_ready() > 0
             if finished:
                 result.fill(job, names, partly=cancelled)
+                if request['pieces'] and not cancelled:
+                    session.pieces.append((layer.name, requests.merge_key(depsgraph.scene, request),
+                                           job.pieces()))
         finally:
             result.end(cancel=not finished)
         stats = dict(job.stats())

@@ -31,6 +31,10 @@ final_sync = SceneSync()
 last_stats = None
 # The sentence with which the last final render failed, or ''.
 last_error = ''
+# Whether final renders keep what merges with other ranges of samples, and what the last one kept:
+# (view layer, settings, native pieces) of each layer.
+keep_pieces = False
+pieces = []
 # Called with (fraction 0..1, text) while a final render runs; None when nobody listens.
 progress_listener = None
 
@@ -78,8 +82,8 @@ def sentence(error):
 
 def start_final():
     """Forget the outcome of the last final render."""
-    global last_stats, last_error
-    last_stats, last_error = None, ''
+    global last_stats, last_error, pieces
+    last_stats, last_error, pieces = None, '', []
 
 
 def fail_final(text):

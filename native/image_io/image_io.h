@@ -1,4 +1,4 @@
-// Images from files and from memory through OpenImageIO; the only place that links it.
+// Images from files and from memory through OpenImageIO; this folder is the only one that links it.
 #pragma once
 
 #include "scene/image.h"

@@ -159,6 +159,7 @@ engine::RenderRequest request(const py::dict& dict) {
   r.exposure = get(dict, "exposure", r.exposure);
   r.force_all_effects = get(dict, "force_all_effects", false);
   r.live = get(dict, "live", false);
+  r.pieces = get(dict, "pieces", false);
   const py::dict settings = get(dict, "settings", py::dict());
   static const std::set<std::string> known{
       "shadow_resolution",    "soft_shadows",        "filter_penumbrae", "time_budget",

@@ -5,6 +5,7 @@
 #include "engine/snapshot.h"
 #include "gl/counters.h"
 #include "image_io/image_io.h"
+#include "image_io/pieces.h"
 #include "python/convert.h"
 #include "python/mesh.h"
 
@@ -105,6 +106,47 @@ py::array read_pass(const Job& job, const std::string& name) {
                             owner);
 }
 
+// Pieces on their way from a job into a file; Python only carries them.
+struct KeptPieces {
+  std::shared_ptr<const film::Pieces> pieces;
+};
+
+// `layers`: (name, settings, Job.pieces()) of each view layer.
+void add_pieces(const std::string& source, const std::string& target, const py::list& layers) {
+  std::vector<image_io::LayerPieces> list;
+  for (const auto& item : layers) {
+    const auto [name, settings, kept] = item.cast<std::tuple<std::string, std::string, KeptPieces>>();
+    if (!kept.pieces) fail("layer '{}' was rendered without pieces: please report it", name);
+    list.push_back({name, settings, kept.pieces});
+  }
+  py::gil_scoped_release release;
+  image_io::add_pieces(source, target, list);
+}
+
+py::list find_pieces(const std::string& path) {
+  py::list result;
+  for (const image_io::LayerRange& layer : image_io::find_pieces(path))
+    result.append(py::make_tuple(layer.layer, layer.settings, layer.first, layer.last));
+  return result;
+}
+
+std::vector<std::string> merge_pieces(const std::vector<std::string>& sources,
+                                      const std::string& target) {
+  py::gil_scoped_release release;
+  return image_io::merge_pieces(sources, target);
+}
+
+void bind_pieces(py::module_& m) {
+  py::class_<KeptPieces>(m, "Pieces", "What a job keeps of its samples for merging.");
+  m.def("add_pieces", &add_pieces, py::arg("source"), py::arg("target"), py::arg("layers"),
+        "Writes an OpenEXR picture to another file with pieces behind it; layers are (name, settings, "
+        "pieces).");
+  m.def("find_pieces", &find_pieces, py::arg("path"),
+        "(layer, settings, first sample, last sample exclusive) of all layers with pieces in a file.");
+  m.def("merge_pieces", &merge_pieces, py::arg("sources"), py::arg("target"),
+        "Merges files in the order of their samples; returns the channels that were left out.");
+}
+
 py::dict counters() {
   const gl::Counters& c = gl::counters();
   py::dict d;
@@ -130,6 +172,8 @@ void bind_job(py::module_& m) {
       .def("finish", &Job::check, "Raises Error when the render failed.")
       .def("read", &read_pass, py::arg("name"),
            "float32 array (height, width, channels) of a pass, row 0 at the bottom.")
+      .def("pieces", [](const Job& job) { return KeptPieces{job.pieces()}; },
+           "What the ended job kept for add_pieces(); empty unless the request had 'pieces'.")
       .def("stats", [](const Job& job) {
         const std::string json = job.stats().to_json();
         return py::module_::import("json").attr("loads")(json);
@@ -211,6 +255,7 @@ PYBIND11_MODULE(panoptes_native, m) {
   m.doc() = "Native part of the Panoptes render engine.";
   m.attr("__version__") = PANOPTES_VERSION;
   py::register_exception<Error>(m, "Error", PyExc_RuntimeError);
+  bind_pieces(m);
   bind_job(m);
   py::class_<Engine> engine = bind_engine(m);
   bind_meshes(m, engine);

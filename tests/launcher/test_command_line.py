@@ -12,14 +12,28 @@ from conftest import ROOT, assert_one_sentence
 def test_help_lists_the_commands_of_this_version(checkout, arguments):
     done = checkout.run(*arguments)
     assert done.returncode == 0 and done.stderr == ""
-    for command in ("render", "viewport", "snapshot", "test", "bench", "package"):
+    for command in ("render", "merge", "viewport", "snapshot", "test", "bench", "package"):
         assert f"./panoptes {command}" in done.stdout
-    assert "merge" not in done.stdout and "report" not in done.stdout
+    assert "report" not in done.stdout
 
 
-@pytest.mark.parametrize("command", ["merge", "report"])
-def test_a_command_of_a_later_version_is_refused(checkout, command):
-    assert_one_sentence(checkout.run(command), 2, command, "not part of this version")
+def test_a_command_of_a_later_version_is_refused(checkout):
+    assert_one_sentence(checkout.run("report"), 2, "report", "not part of this version")
+
+
+@pytest.mark.parametrize("arguments, words", [
+    ((), ("needs a picture to write",)),
+    (("out.exr",), ("needs a picture to write",)),
+    (("out.exr", "gone.exr"), ("there is no file gone.exr",)),
+])
+def test_mistakes_with_merge_are_told_before_blender_starts(checkout, arguments, words):
+    assert_one_sentence(checkout.run("merge", *arguments), 2, *words)
+    assert checkout.recorded("arguments") is None
+
+
+def test_merge_hands_its_files_to_blender(checkout):
+    assert checkout.run("merge", "out.exr", "scene.blend", "scene.blend").returncode == 0
+    assert checkout.recorded("arguments")[-4:] == ["merge", "out.exr", "scene.blend", "scene.blend"]
 
 
 def test_an_unknown_command_is_refused(checkout):

@@ -3,6 +3,7 @@
 
 import argparse
 import re
+from typing import NamedTuple
 
 from .console import Console
 from .failure import BadCommandLine
@@ -20,6 +21,14 @@ class _Parser(argparse.ArgumentParser):
         raise BadCommandLine(f'{message}; {self.prog} --help lists the options.')
 
 
+class Samples(NamedTuple):
+    """Samples `first` up to `last`; `is_range` where both ends were named."""
+
+    first: int
+    last: int
+    is_range: bool
+
+
 def _samples(text):
     match = re.fullmatch(r'(?:(\d+):)?(\d+)', text)
     if match is None:
@@ -27,7 +36,7 @@ def _samples(text):
     first, last = int(match[1] or 0), int(match[2])
     if last <= first:
         raise argparse.ArgumentTypeError(f"'{text}' holds no sample")
-    return first, last
+    return Samples(first, last, match[1] is not None)
 
 
 def _size(text):
@@ -76,7 +85,8 @@ def _add_scene_options(parser):
     parser.add_argument('file', metavar='FILE.blend')
     parser.add_argument('--method', choices=METHODS, help='how light is computed')
     parser.add_argument('--samples', type=_samples, metavar='N|A:B',
-                        help='samples a pixel, or the range from A up to B')
+                        help='samples a pixel, or the range from A up to B, whose .exr can be merged '
+                             'with others')
     parser.add_argument('--bounces', type=_count, metavar='N',
                         help='reflections of indirect light')
     parser.add_argument('--size', type=_size, metavar='WxH', help='pixels')
@@ -100,6 +110,14 @@ def _parser():
     _add_scene_options(render)
     render.add_argument('-o', '--output', required=True, metavar='OUT.(png|exr)')
     render.add_argument('--stats', metavar='OUT.json', help='write statistics')
+    merge = commands.add_parser(
+        'merge', help='put ranges of samples together', allow_abbrev=False,
+        description='Writes the picture of all samples of .exr files that were rendered with --samples '
+                    'A:B, with the same bits as if they had been rendered at once. The ranges must follow '
+                    'on each other, whatever the order of the files; size, passes, seed and settings must '
+                    'agree. Whether the scene is the same nobody checks.')
+    merge.add_argument('output', metavar='OUT.exr')
+    merge.add_argument('files', metavar='IN.exr', nargs='+')
     snapshot = commands.add_parser('snapshot', help='write a scene for the driver',
                                    allow_abbrev=False)
     _add_scene_options(snapshot)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The commands: render, snapshot, viewport."""
+"""The commands: render, merge, snapshot, viewport."""
 
-import contextlib
-import json
 import os
 
 import bpy
@@ -10,6 +8,8 @@ import bpy
 from .. import compat, native, passes, requests, session
 from . import options as scene_options
 from .failure import Failure
+from .files import check_output, replacing, write_json
+from .merging import add_pieces, merge
 
 _FORMATS = {'.png': 'PNG', '.exr': 'OPEN_EXR_MULTILAYER'}
 # Old files hold the first bytes of a .blend; new ones are compressed with gzip or Zstandard.
@@ -48,48 +48,6 @@ def _prepare(options):
     return scene
 
 
-def _check_output(path, suffixes=None):
-    """Return the absolute path of an output file; raises `Failure` if it cannot be written."""
-    suffix = os.path.splitext(path)[1].lower()
-    if suffixes and suffix not in suffixes:
-        raise Failure(f"'{path}' has no format that is known; end it in {' or '.join(suffixes)}.")
-    path = os.path.abspath(path)
-    folder = os.path.dirname(path)
-    if not os.path.isdir(folder):
-        raise Failure(f"There is no folder '{folder}'; make it first.")
-    if os.path.isdir(path):
-        raise Failure(f"'{path}' is a folder; give the name of a file.")
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise Failure(f"The folder '{folder}' cannot be written; choose another or change its "
-                      'permissions.')
-    return path
-
-
-@contextlib.contextmanager
-def _replacing(path):
-    """Give the name of a temporary file that becomes `path` if all goes well, else vanishes."""
-    folder, name = os.path.split(path)
-    stem, suffix = os.path.splitext(name)
-    temporary = os.path.join(folder, f'.{stem}.{os.getpid()}.part{suffix}')
-    try:
-        yield temporary
-        if not os.path.isfile(temporary):
-            raise Failure(f"'{path}' was not written; check the free space in '{folder}'.")
-        os.replace(temporary, path)
-    except OSError as error:
-        raise Failure(f"'{path}' cannot be written ({error.strerror}); check the free space and the "
-                      'permissions of its folder.') from None
-    finally:
-        with contextlib.suppress(OSError):
-            os.remove(temporary)
-
-
-def _write_json(path, data):
-    with _replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
-        json.dump(data, file, indent=2)
-        file.write('\n')
-
-
 def _set_output(scene, temporary, file_format):
     render, image = scene.render, scene.render.image_settings
     render.filepath = temporary
@@ -109,23 +67,27 @@ def _set_output(scene, temporary, file_format):
 
 def render(options, console):
     """Render one frame to a PNG (through the view transform) or a multilayer EXR (scene-linear)."""
-    path = _check_output(options.output, tuple(_FORMATS))
-    stats_path = _check_output(options.stats) if options.stats else None
+    path = check_output(options.output, tuple(_FORMATS))
+    stats_path = check_output(options.stats) if options.stats else None
     scene = _prepare(options)
     file_format = _FORMATS[os.path.splitext(path)[1].lower()]
     session.progress_listener = console.progress
+    # An explicit range is a part of a picture that somebody wants to put together.
+    session.keep_pieces = options.samples is not None and options.samples.is_range and file_format != 'PNG'
     try:
-        with _replacing(path) as temporary:
+        with replacing(path) as temporary:
             _set_output(scene, temporary, file_format)
             _render_frame()
+            add_pieces(temporary, console)
     finally:
         session.progress_listener = None
+        session.keep_pieces = False
         console.clear()
     stats = session.last_stats
     for sentence in stats['warnings']:
         console.warning(sentence)
     if stats_path:
-        _write_json(stats_path, stats)
+        write_json(stats_path, stats)
 
 
 def _render_frame():
@@ -145,7 +107,7 @@ def _render_frame():
 
 def snapshot(options, console):
     """Write the scene and the request of a render for the command-line driver."""
-    path = _check_output(options.output)
+    path = check_output(options.output)
     _prepare(options)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     warnings = []
@@ -155,7 +117,7 @@ def snapshot(options, console):
         console.progress(0.0, 'Synchronising the scene')
         mirror = session.mirror()
         report = session.final_sync.sync(mirror, depsgraph, incremental=False)
-        with _replacing(path) as temporary:
+        with replacing(path) as temporary:
             mirror.engine.write_snapshot(temporary, request)
     console.clear()
     for sentence in dict.fromkeys(warnings + report.warnings):
@@ -186,4 +148,4 @@ def _show_rendered():
                     space.context = 'RENDER'
 
 
-COMMANDS = {'render': render, 'snapshot': snapshot, 'viewport': viewport}
+COMMANDS = {'render': render, 'merge': merge, 'snapshot': snapshot, 'viewport': viewport}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Entry point: blender -b --factory-startup -P addon/panoptes/cli/main.py -- COMMAND ...
 
-Commands: render, snapshot, viewport. The launcher silences Blender's own output and passes the real
+Commands: render, merge, snapshot, viewport. The launcher silences Blender's own output and passes the real
 stderr as a file descriptor in PANOPTES_STDERR_FD; progress, warnings and the one line of an error go
 there. The exit status is 0 only if the command did what it says.
 """

@@ -10,7 +10,7 @@ def apply(options, scene):
     if options.method is not None:
         settings.method = options.method
     if options.samples is not None:
-        first, last = options.samples
+        first, last, _ = options.samples
         _assign(settings, 'first_sample', str(first))
         _assign(settings, 'samples', str(last - first))
     for name in ('bounces', 'seed', 'time_budget', 'noise_threshold'):
