@@ -39,37 +39,38 @@ void for_pieces(OIIO::ImageInput& input, F&& use) {
   OIIO::geterror();  // there is no part behind the last one
 }
 
-std::string channel_name(Pass pass, int channel) {
+std::string channel_name(const std::string& part, Pass pass, int channel) {
   const film::PassInfo& p = film::info(pass);
-  return fmt::format("{}.{}", p.name, p.channels == 1 ? 'Z' : "RGBA"[channel]);
+  return fmt::format("{}.{}.{}", part, p.name, p.channels == 1 ? 'Z' : "RGBA"[channel]);
 }
 
-void add_planes(std::vector<Plane>& planes, Pass pass, const float* values) {
+void add_planes(std::vector<Plane>& planes, const std::string& part, Pass pass,
+                const float* values) {
   const int channels = film::info(pass).channels;
   for (int c = 0; c < channels; ++c)
-    planes.push_back({channel_name(pass, c), values + c, size_t(channels)});
+    planes.push_back({channel_name(part, pass, c), values + c, size_t(channels)});
 }
 
 // The channels of a piece; `begins` says that it is the first one.
-std::vector<Plane> planes_of(const film::Pieces& pieces, const film::Piece& piece, bool begins) {
+std::vector<Plane> planes_of(const film::Pieces& pieces, const film::Piece& piece, bool begins,
+                             const std::string& part) {
   std::vector<Plane> planes;
   const film::Layout layout = pieces.layout();
   for (int i = 0; i < film::kPassCount; ++i)
     if (layout.holds(Pass(i)))
-      add_planes(planes, Pass(i), piece.sums.data() + layout.begin(Pass(i)));
+      add_planes(planes, part, Pass(i), piece.sums.data() + layout.begin(Pass(i)));
   if (begins)
-    for (const auto& [pass, values] : pieces.firsts) add_planes(planes, pass, values.data());
+    for (const auto& [pass, values] : pieces.firsts) add_planes(planes, part, pass, values.data());
   return planes;
 }
 
 OIIO::ImageSpec piece_spec(const LayerPieces& layer, const film::Piece& piece,
-                           const std::vector<Plane>& planes) {
+                           const std::vector<Plane>& planes, const std::string& part) {
   OIIO::ImageSpec spec(layer.pieces->width, layer.pieces->height, int(planes.size()),
                        OIIO::TypeDesc::FLOAT);
   for (size_t i = 0; i < planes.size(); ++i) spec.channelnames[i] = planes[i].name;
   spec.attribute("compression", "zip");
-  spec.attribute("oiio:subimagename",
-                 fmt::format("panoptes {} {}-{}", layer.layer, piece.first, piece.last));
+  spec.attribute("oiio:subimagename", part);
   spec.attribute(kLayer, layer.layer);
   spec.attribute(kSettings, layer.settings);
   spec.attribute(kFirst, int(piece.first));
@@ -92,10 +93,13 @@ void write_file(const std::string& target, OIIO::ImageSpec picture,
                 std::span<const LayerPieces> layers, F&& write_picture) {
   std::vector<OIIO::ImageSpec> specs{picture_spec(std::move(picture))};
   std::vector<std::vector<Plane>> parts;
-  for (const LayerPieces& layer : layers)
-    for (const film::Piece& piece : layer.pieces->sums.pieces()) {
-      parts.push_back(planes_of(*layer.pieces, piece, piece.first == layer.pieces->sums.first()));
-      specs.push_back(piece_spec(layer, piece, parts.back()));
+  for (size_t i = 0; i < layers.size(); ++i)
+    for (const film::SampleSums& sums = layers[i].pieces->sums;
+         const film::Piece& piece : sums.pieces()) {
+      const std::string part =
+          fmt::format("layer {} samples {}-{}", i + 1, piece.first, piece.last);
+      parts.push_back(planes_of(*layers[i].pieces, piece, piece.first == sums.first(), part));
+      specs.push_back(piece_spec(layers[i], piece, parts.back(), part));
     }
   auto output = OIIO::ImageOutput::create("openexr");
   const auto check = [&](bool done) {
@@ -112,11 +116,16 @@ void write_file(const std::string& target, OIIO::ImageSpec picture,
   check(output->close());
 }
 
+int channel_index(const OIIO::ImageSpec& spec, Pass pass, int channel) {
+  const std::string part = std::string(spec.get_string_attribute("oiio:subimagename"));
+  return spec.channelindex(channel_name(part, pass, channel));
+}
+
 // The passes whose channels a part has.
 film::PassSet passes_in(const OIIO::ImageSpec& spec) {
   film::PassSet passes;
   for (int i = 0; i < film::kPassCount; ++i)
-    passes[size_t(i)] = spec.channelindex(channel_name(Pass(i), 0)) >= 0;
+    passes[size_t(i)] = channel_index(spec, Pass(i), 0) >= 0;
   return passes;
 }
 
@@ -124,7 +133,7 @@ void add_targets(std::vector<Target>& targets, const OIIO::ImageSpec& spec, cons
                  Pass pass, float* values) {
   const int channels = film::info(pass).channels;
   for (int c = 0; c < channels; ++c) {
-    const int index = spec.channelindex(channel_name(pass, c));
+    const int index = channel_index(spec, pass, c);
     if (index < 0)
       fail("'{}' lacks channels of pass '{}': render it again", path, film::info(pass).name);
     targets.push_back({index, values + c, size_t(channels)});

@@ -1,7 +1,9 @@
 // Pieces of pictures (film/pieces.h) in OpenEXR files. A file's first part is the picture, under the
 // names that Blender gives; behind it comes one part a piece, with a channel for each channel of each
-// pass that is summed ("DiffDir.R"), in the first piece also of those that are not. Other programs
-// show the picture. What a piece is stands in its part's attributes "panoptes:...".
+// pass that is summed, in the first piece also of those that are not. A piece's channels are named
+// after its part, "layer 1 samples 0-16.DiffDir.R": Blender would refuse a file with the same names in
+// several parts, and lists the parts as layers after its own. What a piece is stands in its part's
+// attributes "panoptes:...".
 #pragma once
 
 #include "film/pieces.h"
