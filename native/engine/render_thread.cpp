@@ -175,7 +175,10 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
-                {.moments = wanted > 1 && !debug, .pieces = request.pieces});
+                {.moments = wanted > 1 && !debug,
+                 .pieces = request.pieces,
+                 // Real-time renders all pixels, and stops when the whole picture is good enough.
+                 .noise_threshold = paths && wanted > 1 ? request.noise_threshold : 0});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
     if (debug || paths) traced_.update(scene, gpu_scene_, programs_, timer_);
     if (paths) begin_paths(request, plan, scene);
@@ -213,7 +216,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     // Stop before a sample that would overrun the budget.
     const double spent = ms_since(start), each = ms_since(trace_start) / done;
     if (request.time_budget > 0 && spent + each > request.time_budget * 1000) break;
-    if (request.noise_threshold > 0 && done % kErrorInterval == 0 && done < wanted) {
+    if (request.noise_threshold > 0 && film_.all_active() && done % kErrorInterval == 0 &&
+        done < wanted) {
       const std::optional<double> error = film_.estimated_error();
       if (error && *error < request.noise_threshold) break;
     }
