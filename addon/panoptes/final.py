@@ -50,7 +50,7 @@ def render(engine, depsgraph):
             finished = not cancelled or job.samples_ready() > 0
             if finished:
                 result.fill(job, names, partly=cancelled)
-                if request['pieces']:
+                if request['pieces'] and not cancelled:
                     session.pieces.append((layer.name, requests.merge_key(depsgraph.scene, request),
                                            job.pieces()))
         finally:

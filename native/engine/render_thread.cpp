@@ -31,6 +31,7 @@ bool traces_paths(const RenderRequest& request) {
 
 // About the rays of a path, for the choice of a structure before any was traced.
 constexpr int64_t kRaysOfPath = 6;
+
 // How many samples share a pixel's footprint with this one. Where ranges are to be merged nobody knows
 // how many there will be: then it is as many as there are up to the end of its octave.
 uint32_t sharing(const RenderRequest& request, uint32_t index) {
@@ -176,7 +177,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     film_.start(request.camera.width, request.camera.height, passes,
                 {.moments = wanted > 1 && !debug,
                  .pieces = request.pieces,
-                 .noise_threshold = paths ? request.noise_threshold : 0.0});
+                 // Real-time renders all pixels, and stops when the whole picture is good enough.
+                 .noise_threshold = paths && wanted > 1 ? request.noise_threshold : 0});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
     if (debug || paths) traced_.update(scene, gpu_scene_, programs_, timer_);
     if (paths) begin_paths(request, plan, scene);
@@ -214,9 +216,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     // Stop before a sample that would overrun the budget.
     const double spent = ms_since(start), each = ms_since(trace_start) / done;
     if (request.time_budget > 0 && spent + each > request.time_budget * 1000) break;
-    // Paths stop pixel by pixel, what is rasterised all at once.
-    if (!film_.all_active() && film_.active_count() == 0) break;
-    if (!paths && request.noise_threshold > 0 && done % kErrorInterval == 0 && done < wanted) {
+    if (request.noise_threshold > 0 && film_.all_active() && done % kErrorInterval == 0 &&
+        done < wanted) {
       const std::optional<double> error = film_.estimated_error();
       if (error && *error < request.noise_threshold) break;
     }

@@ -171,7 +171,8 @@ void take_up(OIIO::ImageInput& input, const std::string& path, film::Pieces& pie
   pieces.sums.add(std::move(piece));
 }
 
-// A pass of the picture that pieces make; empty for one that they do not have.
+// A pass of the picture that pieces make; black for one that they do not have, since no method fills
+// them all.
 std::vector<float> picture_of(const film::Pieces& pieces, Pass pass) {
   const film::Layout layout = pieces.layout();
   const film::SampleCounts counts{pieces.sums.last() - pieces.sums.first(), {}};
@@ -179,7 +180,7 @@ std::vector<float> picture_of(const film::Pieces& pieces, Pass pass) {
     return film::sample_shares(counts, size_t(pieces.width) * size_t(pieces.height));
   if (const auto first = pieces.firsts.find(pass); first != pieces.firsts.end())
     return first->second;
-  if (!layout.holds(pass)) return {};
+  if (!layout.holds(pass)) return std::vector<float>(layout.size(pass));
   const auto total = [&](Pass of) {
     return pieces.sums.total(layout.begin(of), layout.size(of));
   };
@@ -203,7 +204,6 @@ void add_picture(const LayerPieces& layer, const OIIO::ImageSpec& spec, std::vec
                            std::string_view("XYZ").find(name.back()));
       if (channel >= size_t(p.channels)) continue;
       if (picture.empty()) picture = picture_of(*layer.pieces, Pass(i));
-      if (picture.empty()) break;
       planes.push_back({name, picture.data() + channel, size_t(p.channels)});
     }
     // The planes point into the vector's own storage, which moving leaves in place.
