@@ -20,7 +20,8 @@ using panoptes::fail;
 constexpr const char* kUsage =
     "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
     "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
-    "                       [--method realtime|primitive] [--bounces N]\n"
+    "                       [--method realtime|primitive] [--bounces N] [--shadow-maps]\n"
+    "                       [--raster-primary]\n"
     "                       [--structure auto|orthographic|cube|lists|bvh] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
@@ -30,6 +31,7 @@ struct Arguments {
   std::optional<panoptes::ray_picture::Kind> debug;
   std::optional<panoptes::engine::Method> method;
   int bounces = -1;
+  bool shadow_maps = false, raster_primary = false;
   panoptes::engine::StructureSettings structure;
 };
 
@@ -57,6 +59,8 @@ Arguments parse(const std::vector<std::string>& words) {
     else if (word == "--stats") a.stats = value();
     else if (word == "--samples") a.samples = whole(word, value());
     else if (word == "--repeat") a.repeat = whole(word, value());
+    else if (word == "--shadow-maps") a.shadow_maps = true;
+    else if (word == "--raster-primary") a.raster_primary = true;
     else if (word == "--bounces") a.bounces = whole(word, value(), 0);
     else if (word == "--method") {
       const std::string& name = value();
@@ -118,6 +122,8 @@ void run(const Arguments& arguments) {
   }
   request.passes.set(size_t(panoptes::film::Pass::kCombined));
   request.method = arguments.method.value_or(request.method);
+  request.paths.shadow_maps |= arguments.shadow_maps;
+  request.paths.raster_primary |= arguments.raster_primary;
   if (arguments.bounces >= 0) request.paths.bounces.total = arguments.bounces;
   request.debug_picture = arguments.debug.value_or(request.debug_picture);
   if (arguments.structure != panoptes::engine::StructureSettings{})

@@ -125,7 +125,8 @@ void RenderThread::begin_paths(const RenderRequest& request, const plan::Effects
   film::PassSet passes = request.passes;
   if (request.force_all_effects) passes.set();
   path_tracer_.begin(request.camera, plan,
-                     {request.paths, request.seed, request.filter_width, request.transparent_film},
+                     {request.paths, request.seed, request.filter_width, request.transparent_film,
+                      request.shadow_resolution},
                      scene, gpu_scene_, traced_.triangles(), film::with_divisors(passes));
 }
 

@@ -53,8 +53,11 @@ void Lights::update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu,
 
 void Lights::list(const scene::Scene& scene, const glm::vec3& origin) {
   std::vector<DescribedLight> lights;
-  for (const scene::Light& lamp : scene.lights())
-    if (auto light = describe(lamp, glm::dvec3(origin))) lights.push_back(std::move(*light));
+  for (size_t i = 0; i < scene.lights().size(); ++i)
+    if (auto light = describe(scene.lights()[i], glm::dvec3(origin))) {
+      light->record.edge_y.w = std::bit_cast<float>(uint32_t(i));
+      lights.push_back(std::move(*light));
+    }
   std::stable_sort(lights.begin(), lights.end(),
                    [](const DescribedLight& a, const DescribedLight& b) { return rank(a) < rank(b); });
   lights.insert(lights.end(), triangles_.begin(), triangles_.end());

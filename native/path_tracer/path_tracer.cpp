@@ -71,6 +71,11 @@ void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& pla
   options_.shines = options_.surfaces.emission || gpu.world() || lights_.any();
   options_.deferred = lights_.world_sampled() || lights_.emitters_vary();
   options_.transparent_film = settings.transparent_film;
+  options_.shadow_maps = paths.shadow_maps && lights_.lamp_count() > 0;
+  if (options_.shadow_maps)
+    map_shadows_.begin(scene.lights(), scene.bounds(), list_origin_, settings.shadow_resolution);
+  else
+    map_shadows_.release();
   depth_passes_ = passes[size_t(film::Pass::kDepth)] ||
                   passes[size_t(film::Pass::kPosition)];
 
@@ -128,13 +133,14 @@ void PathTracer::reserve(uint32_t paths) {
   path_tracer::reserve(records_, records_texels_, GL_RGBA32UI, n * record_bytes());
   path_tracer::reserve(sums_, sums_texels_, GL_RGBA32F, n * 16 * int64_t(options_.passes.size()));
   going_.reserve(n * 4);
-  counters_.reserve(8);
+  counters_.reserve(int64_t(sizeof(Sent)));
   if (!lights_.any() && !options_.occlusion) return;
   shadow_rays_.reserve(n * int64_t(sizeof(shared::TracedRay)));
   shadow_hits_.reserve(n * int64_t(sizeof(shared::TracedHit)));
   shadow_passed_.reserve(n * 16);
   arrivals_.reserve(n * int64_t(sizeof(shared::Arrival)));
   shadow_list_.reserve(n * 4);
+  lit_list_.reserve(n * 4);
   if (options_.light_passes) shares_.reserve(n * 32);
   if (options_.deferred) deferred_.reserve(n * 4);
 }
@@ -145,7 +151,7 @@ void PathTracer::release() {
     *texels = gl::Texture();
   for (gl::Buffer* buffer : {&rays_buffer_, &hits_, &states_, &passed_, &records_, &sums_,
                              &shadow_rays_, &shadow_hits_, &shadow_passed_, &arrivals_, &shares_,
-                             &going_, &shadow_list_, &deferred_, &counters_})
+                             &going_, &shadow_list_, &lit_list_, &deferred_, &counters_})
     *buffer = gl::Buffer();
   raster_.release();
   lights_ = Lights(device_);
@@ -163,18 +169,19 @@ void PathTracer::render_sample(uint32_t index, bool first, const Surroundings& a
   const auto pixels = film.all_active() ? uint32_t(film.width()) * uint32_t(film.height())
                                         : uint32_t(film.active_count());
   reserve(std::min(pixels, kBatch));
-  if (settings_.paths.raster_primary) {
-    shared::View view = camera_view(index);
-    view.size.z = int(index);
-    view.size.w = int(settings_.seed);
-    view.alpha.x = -1;
+  shared::View view = camera_view(index);
+  view.size.z = int(index);
+  view.size.w = int(settings_.seed);
+  view.alpha.x = -1;  // by chance
+  if (settings_.paths.raster_primary)
     raster_.rasterize(view, around.scene, camera_block_, programs_, timer_);
-  }
+  if (options_.shadow_maps)
+    map_shadows_.render(view, around.scene, camera_block_, programs_, timer_);
   for (uint32_t start = 0; start < pixels; start += kBatch) {
     const uint32_t count = std::min(pixels - start, kBatch);
     set_frame(index, start, count);
     if (first && depth_passes_) write_depth(count, around, film);
-    begin_paths(count, settings_.paths.raster_primary, camera_view(index), film);
+    begin_paths(count, settings_.paths.raster_primary, view, film);
     trace_paths(count, around, cancelled);
     resolve(count, film);
   }
@@ -258,15 +265,20 @@ void PathTracer::trace_paths(uint32_t count, const Surroundings& around,
     fetch(around);
     miss(met, missed, around);
     if (depth == 0 && options_.occlusion) ambient_occlusion(met, around);
-    const auto [going, shadows] = shade(met, depth);
+    const Sent sent = shade(met, depth);
     stop_if(cancelled);
     {
       gl::PassScope scope(timer_, "shadow_rays");
-      trace_shadows(shadows, around);
+      trace_shadows(sent.shadow_rays, around);
     }
-    arrive(shadows, around);
+    {
+      gl::PassScope scope(timer_, "direct_light");
+      arrive(sent.lit, false);
+      arrive(sent.shadow_rays, true);
+      if (options_.deferred && sent.shadow_rays > 0) arrive_deferred(around);
+    }
     stop_if(cancelled);
-    count = going;
+    count = sent.paths;
     listed = &going_;
   }
 }
@@ -318,8 +330,8 @@ void PathTracer::miss(uint32_t first, uint32_t count, const Surroundings& around
   gl::dispatch(count, kBarriers);
 }
 
-std::pair<uint32_t, uint32_t> PathTracer::shade(uint32_t count, uint32_t depth) {
-  if (count == 0) return {0, 0};
+PathTracer::Sent PathTracer::shade(uint32_t count, uint32_t depth) {
+  if (count == 0) return {};
   gl::PassScope scope(timer_, "path_shading");
   counters_.clear();
   programs_.get(shade_program(options_)).use();
@@ -333,22 +345,27 @@ std::pair<uint32_t, uint32_t> PathTracer::shade(uint32_t count, uint32_t depth) 
   bind(0, rays_buffer_);
   bind(1, states_);
   bind(2, counters_);
-  bind(3, going_);
-  bind(4, passed_);
+  bind(11, going_);
+  bind(12, passed_);
   bind(6, sums_);
   if (lights_.any()) {
     bind(5, shadow_rays_);
     bind(7, shadow_list_);
     bind(8, arrivals_);
     bind(9, shadow_passed_);
+    bind(13, lit_list_);
     if (options_.light_passes) bind(10, shares_);
   }
   glUniform1ui(0, count);
   glUniform1ui(1, depth);
+  if (options_.shadow_maps) {
+    map_shadows_.bind();
+    glUniform1ui(2, map_shadows_.mapped());
+  }
   gl::dispatch(count, kBarriers);
-  uint32_t counts[2] = {0, 0};
-  counters_.read(0, sizeof counts, counts);
-  return {counts[0], counts[1]};
+  Sent sent;
+  counters_.read(0, sizeof sent, &sent);
+  return sent;
 }
 
 void PathTracer::trace_shadows(uint32_t count, const Surroundings& around) {
@@ -366,18 +383,18 @@ void PathTracer::trace_shadows(uint32_t count, const Surroundings& around) {
   rays_ += opacity_.rays();
 }
 
-void PathTracer::arrive(uint32_t count, const Surroundings& around) {
+void PathTracer::bind_arrivals(const gl::Buffer& listed) const {
+  bind(1, arrivals_);
+  bind(2, listed);
+  if (options_.light_passes) bind(3, shares_);
+  bind(6, sums_);
+}
+
+void PathTracer::arrive(uint32_t count, bool traced) {
   if (count == 0) return;
-  gl::PassScope scope(timer_, "direct_light");
-  const auto bind_arrivals = [&](const gl::Buffer& listed) {
-    bind(1, arrivals_);
-    bind(2, listed);
-    if (options_.light_passes) bind(3, shares_);
-    bind(6, sums_);
-  };
-  programs_.get(arrive_program(options_)).use();
+  programs_.get(arrive_program(options_, traced)).use();
   bind_texels(sums_texels_, kSumsUnit);
-  bind_arrivals(shadow_list_);
+  bind_arrivals(traced ? shadow_list_ : lit_list_);
   bind(0, shadow_hits_);
   if (options_.alpha) bind(4, shadow_passed_);
   if (options_.deferred) {
@@ -387,11 +404,12 @@ void PathTracer::arrive(uint32_t count, const Surroundings& around) {
   }
   glUniform1ui(0, count);
   gl::dispatch(count, kBarriers);
-  if (!options_.deferred) return;
+}
+
+void PathTracer::arrive_deferred(const Surroundings& around) {
   uint32_t waiting = 0;
   counters_.read(0, 4, &waiting);
   if (waiting == 0) return;
-
   const auto materials = uint32_t(around.scene.materials().size());
   bins_.sort({shadow_hits_, waiting, &deferred_, false}, materials, around.triangles, programs_);
   uint32_t first = 0;
@@ -408,6 +426,7 @@ void PathTracer::arrive(uint32_t count, const Surroundings& around) {
       around.scene.bind_geometry();
       around.scene.bind_shading(material);
       around.triangles.texture().bind(gpu_scene::kFreeUnit);
+      set_list_view();
     }
     bind(0, shadow_rays_);
     bind_arrivals(bins_.sorted());

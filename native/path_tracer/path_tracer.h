@@ -14,6 +14,7 @@
 #include "gpu_scene/view.h"
 #include "gpu_scene/view_block.h"
 #include "path_tracer/lights.h"
+#include "path_tracer/map_shadows.h"
 #include "path_tracer/programs.h"
 #include "path_tracer/raster_primary.h"
 #include "path_tracer/settings.h"
@@ -38,12 +39,14 @@ struct FrameSettings {
   uint32_t seed = 0;
   float filter_width = 1.5f;      // pixels, of the Blackman-Harris window to each side
   bool transparent_film = false;  // the world behind the scene is not part of Combined
+  int shadow_resolution = 2048;   // of maps, texels a side
 };
 
 class PathTracer {
  public:
   PathTracer(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
-      : device_(device), programs_(programs), timer_(timer), lights_(device) {}
+      : device_(device), programs_(programs), timer_(timer), lights_(device),
+        map_shadows_(device) {}
 
   // Prepares for a frame of these passes (completed by what they are divided by): lists the lights and
   // compiles the programs of all materials.
@@ -71,10 +74,15 @@ class PathTracer {
   void trace(uint32_t count, const gl::Buffer* listed, float threshold, const Surroundings& around);
   void fetch(const Surroundings& around);
   void miss(uint32_t first, uint32_t count, const Surroundings& around);
-  // Sends paths on from the surfaces that they met; the numbers that go on, and of shadow rays.
-  std::pair<uint32_t, uint32_t> shade(uint32_t count, uint32_t depth);
+  struct Sent {
+    uint32_t paths = 0, shadow_rays = 0, lit = 0;  // lit: reached by light without a shadow ray
+  };
+  // Sends paths on from the surfaces that they met.
+  Sent shade(uint32_t count, uint32_t depth);
   void trace_shadows(uint32_t count, const Surroundings& around);
-  void arrive(uint32_t count, const Surroundings& around);
+  void bind_arrivals(const gl::Buffer& listed) const;
+  void arrive(uint32_t count, bool traced);
+  void arrive_deferred(const Surroundings& around);
   void ambient_occlusion(uint32_t count, const Surroundings& around);
   void write_depth(uint32_t count, const Surroundings& around, film::Film& film);
   void resolve(uint32_t count, film::Film& film);
@@ -96,6 +104,7 @@ class PathTracer {
 
   gpu_scene::ViewBlock camera_block_, list_block_;
   RasterPrimary raster_;
+  MapShadows map_shadows_;
   gl::Buffer frame_block_, filter_buffer_;
   gl::Texture filter_offsets_;
   tracing::OpacityWaves opacity_;
@@ -104,7 +113,7 @@ class PathTracer {
   // One entry a path.
   gl::Buffer rays_buffer_, hits_, states_, passed_, records_, sums_;
   gl::Buffer shadow_rays_, shadow_hits_, shadow_passed_, arrivals_, shares_;
-  gl::Buffer going_, shadow_list_, deferred_, counters_;
+  gl::Buffer going_, shadow_list_, lit_list_, deferred_, counters_;
   gl::Texture rays_texels_, hits_texels_, states_texels_, passed_texels_, records_texels_,
       sums_texels_;
 };

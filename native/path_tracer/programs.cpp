@@ -91,6 +91,8 @@ gl::ProgramSource shade_program(const ProgramOptions& options) {
   add_lights(options, source);
   define(source, "FILTER_GLOSSY", options.filter_glossy);
   define(source, "SHINES", options.shines);
+  define(source, "SHADOW_MAPS", options.shadow_maps);
+  if (options.shadow_maps) define(source, "FILTERED_PENUMBRAE", false);
   define(source, "SUMS_IN_STORAGE", false);
   return source;
 }
@@ -106,9 +108,10 @@ gl::ProgramSource miss_program(const gpu_scene::GpuShading* world, const Program
   return source;
 }
 
-gl::ProgramSource arrive_program(const ProgramOptions& options) {
+gl::ProgramSource arrive_program(const ProgramOptions& options, bool traced) {
   gl::ProgramSource source = program("light that arrives", "arrive");
   add_sums(options, source);
+  define(source, "TRACED", traced);
   define(source, "TRANSMITTANCE", options.alpha);
   define(source, "DEFERRED", options.deferred);
   define(source, "SUMS_IN_STORAGE", false);

@@ -28,6 +28,7 @@ struct ProgramOptions {
   bool shines = false;            // paths that look for light may meet some
   bool deferred = false;          // some lights are only evaluated once they are known to arrive
   bool transparent_film = false;
+  bool shadow_maps = false;
 
   // Adds the passes that a film has been started with.
   void add_passes(const film::PassSet& passes);
@@ -40,7 +41,8 @@ gl::ProgramSource fetch_program(const gpu_scene::GpuMaterial& material,
 gl::ProgramSource shade_program(const ProgramOptions& options);
 // `world`: null where it is black.
 gl::ProgramSource miss_program(const gpu_scene::GpuShading* world, const ProgramOptions& options);
-gl::ProgramSource arrive_program(const ProgramOptions& options);
+// `traced`: along shadow rays; else where none is needed.
+gl::ProgramSource arrive_program(const ProgramOptions& options, bool traced);
 gl::ProgramSource arrive_world_program(const gpu_scene::GpuShading& world,
                                        const ProgramOptions& options);
 gl::ProgramSource arrive_emitter_program(const gpu_scene::GpuMaterial& material,

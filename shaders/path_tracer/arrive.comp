@@ -1,9 +1,9 @@
-// Light whose shadow ray met nothing: that which is known arrives; the rest is listed, with its source
+// Light whose shadow ray met nothing, or which needs none (TRACED 0): that which is known arrives; the rest is listed, with its source
 // in place of the hit, so that it can be sorted by the material that emits it.
 #include "path_tracer/arrivals.glsl"
 
 layout(std430, binding = 0) buffer Hits { TracedHit shadow_hits[]; };
-#if TRANSMITTANCE
+#if TRACED && TRANSMITTANCE
 layout(std430, binding = 4) readonly buffer Passed { vec4 shadow_passed[]; };
 #endif
 #if DEFERRED
@@ -16,10 +16,12 @@ void main() {
   uint i = invocation();
   if (i >= count) return;
   uint index = listed[i];
+#if TRACED
   if (shadow_hits[index].primitive != NO_PRIMITIVE) return;
+#endif
   Arrival arrival = arrivals[index];
   vec3 light = vec3(arrival.r, arrival.g, arrival.b);
-#if TRANSMITTANCE
+#if TRACED && TRANSMITTANCE
   light *= shadow_passed[index].rgb;
 #endif
 #if DEFERRED

@@ -18,6 +18,7 @@ struct LightSample {
                    // multiplied (Surface.emission as evaluate_material() leaves it, not finished)
   float u, v;      // barycentric coordinates of the second and third vertex
   uint seen_by;    // SEEN_BY_... bits: which kinds of rays could have met it
+  uint lamp;       // its number in the scene; NO_LIGHT for what is none
 };
 
 const uint LIGHT_SEEN_BY_ALL = 63u;
@@ -45,7 +46,8 @@ float world_share(vec3 from, vec3 normal) {
 
 // False, and pdf 0, where no light comes from what was chosen.
 bool light_sample(vec3 from, vec3 normal, vec3 random, out LightSample s) {
-  s = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), 0.0, false, LIGHT_KNOWN, 0.0, 0.0, LIGHT_SEEN_BY_ALL);
+  s = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), 0.0, false, LIGHT_KNOWN, 0.0, 0.0,
+                  LIGHT_SEEN_BY_ALL, NO_LIGHT);
 #if WORLD_SAMPLED
   float share = world_share(from, normal);
   if (random.z < share) {
@@ -67,7 +69,9 @@ bool light_sample(vec3 from, vec3 normal, vec3 random, out LightSample s) {
   light = choose_light(from, normal, min((random.z - share) / (1.0 - share), 0.99999994), probability);
   if (light == NO_LIGHT) return false;
 #endif
-  sample_record(fetch_record(light), from, random.xy, s);
+  LightRecord record = fetch_record(light);
+  sample_record(record, from, random.xy, s);
+  if ((record_flags(record) & KIND_MASK) != KIND_TRIANGLE) s.lamp = floatBitsToUint(record.edge_y.w);
   s.pdf *= probability * (1.0 - share);
   if (!(s.pdf > 0.0 && s.pdf < 1.0e37)) s.pdf = 0.0;
 #endif

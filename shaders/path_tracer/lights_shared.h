@@ -24,7 +24,7 @@ struct LightRecord {
   vec4 place;   // xyz: centre of a lamp, first corner of a triangle; relative to the list of
                 // triangles' origin, metres; w: kind (bits)
   vec4 edge_x;  // xyz: areas: whole side or diameter; triangles: second corner - first; w: trail (bits)
-  vec4 edge_y;  // likewise, of the third corner; w: a triangle's primitive (bits)
+  vec4 edge_y;  // likewise, of the third corner; w: a triangle's primitive, a lamp's number (bits)
   vec4 axis;    // xyz: unit, where it shines; triangles: normal of the front;
                 // w: points, spots: radius in metres; suns: tan(angle / 2); areas, triangles: m2
   vec4 front;   // xyz: radiance of areas and triangles' fronts; radiant intensity of points, spots

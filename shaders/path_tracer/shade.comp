@@ -14,6 +14,9 @@
 #if LIGHTS
 #include "path_tracer/lights.glsl"
 #endif
+#if SHADOW_MAPS
+#include "rasterize/shadow_lookup.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 layout(binding = 5) uniform samplerBuffer rays_in;  // as TracedRay
@@ -22,14 +25,19 @@ layout(binding = 6) uniform usamplerBuffer hits;    // as TracedHit
 layout(binding = 9) uniform samplerBuffer passed_in;
 layout(std430, binding = 0) writeonly buffer Rays { TracedRay rays[]; };
 layout(std430, binding = 1) writeonly buffer States { uvec4 new_states[]; };
-layout(std430, binding = 2) buffer Counters { uint going_count, shadow_count; };
-layout(std430, binding = 3) writeonly buffer Going { uint going[]; };
-layout(std430, binding = 4) writeonly buffer PassedOn { vec4 passed[]; };
+layout(std430, binding = 2) buffer Counters { uint going_count, shadow_count, lit_count; };
+layout(std430, binding = 11) writeonly buffer Going { uint going[]; };
+layout(std430, binding = 12) writeonly buffer PassedOn { vec4 passed[]; };
 #if LIGHTS
 layout(std430, binding = 5) writeonly buffer ShadowRays { TracedRay shadow_rays[]; };
 layout(std430, binding = 7) writeonly buffer ShadowList { uint shadow_list[]; };
+layout(std430, binding = 13) writeonly buffer LitList { uint lit_list[]; };  // without a shadow ray
 layout(std430, binding = 8) writeonly buffer Arrivals { Arrival arrivals[]; };
 layout(std430, binding = 9) writeonly buffer ShadowPassed { vec4 shadow_passed[]; };
+#if SHADOW_MAPS
+layout(std430, binding = 3) readonly buffer MappedLights { Light mapped_lights[]; };
+layout(location = 2) uniform uint mapped_count;
+#endif
 #if LIGHT_PASSES
 layout(std430, binding = 10) writeonly buffer Shares { vec4 shares[]; };  // two a path
 #endif
@@ -139,11 +147,21 @@ void main() {
     BsdfValue value = bsdf_evaluate(lobes, light.direction);
     // What scattered rays of that kind cannot meet is for light samples alone.
     float weight = power_heuristic(light.pdf, value.pdf);
-    if ((light.seen_by & SEEN_BY_DIFFUSE) != 0u) value.diffuse *= weight;
-    if ((light.seen_by & SEEN_BY_GLOSSY) != 0u) value.glossy *= weight;
-    if ((light.seen_by & SEEN_BY_TRANSMISSION) != 0u) value.transmission *= weight;
+    uint met_by = light.singular ? 0u : light.seen_by;
+    if ((met_by & SEEN_BY_DIFFUSE) != 0u) value.diffuse *= weight;
+    if ((met_by & SEEN_BY_GLOSSY) != 0u) value.glossy *= weight;
+    if ((met_by & SEEN_BY_TRANSMISSION) != 0u) value.transmission *= weight;
     vec3 all = value.diffuse + value.glossy + value.transmission;
     vec3 contribution = path.throughput * all * light.value / light.pdf;
+    bool traced = light.t_max > 0.0;
+#if SHADOW_MAPS
+    if (traced && light.lamp < mapped_count) {
+      traced = false;
+      Light mapped = mapped_lights[light.lamp];
+      Receiver receiver = Receiver(position, lobes.geometric_normal, lobes.smooth_normal, bulge, 0.0);
+      if (mapped.shadow != NO_SHADOW) contribution *= shadow(mapped, receiver, light.direction);
+    }
+#endif
     if (largest(contribution) > 0.0) {
       float facing = dot(lobes.geometric_normal, light.direction);
       float away = facing < 0.0 ? -offset : offset;
@@ -161,7 +179,8 @@ void main() {
       shares[index * 2u] = vec4(first ? quotient(value.diffuse, all) : path.diffuse_share, 0.0);
       shares[index * 2u + 1u] = vec4(first ? quotient(value.glossy, all) : path.glossy_share, 0.0);
 #endif
-      shadow_list[atomicAdd(shadow_count, 1u)] = index;
+      if (traced) shadow_list[atomicAdd(shadow_count, 1u)] = index;
+      else lit_list[atomicAdd(lit_count, 1u)] = index;
     }
   }
 #endif
