@@ -100,6 +100,8 @@ class PanoptesPrimitiveSettings(bpy.types.PropertyGroup):
             ('lists', 'Cube, Linked Lists', 'Six views with the linked lists of the dissertation, to '
                                             'compare'),
             ('bvh', 'Hierarchy', 'A hierarchy of boxes: fast to trace, for geometry that rests'),
+            ('view', "Camera's View", 'What the camera sees alone: fast, but no ray meets what is behind '
+                                      'the camera or beside its view, so mirrors and shadows lack it'),
         ),
         default='auto')
     tiles: IntProperty(

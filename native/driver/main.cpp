@@ -22,7 +22,7 @@ constexpr const char* kUsage =
     "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
     "                       [--method realtime|primitive] [--bounces N] [--shadow-maps]\n"
     "                       [--raster-primary]\n"
-    "                       [--structure auto|orthographic|cube|lists|bvh] [--tiles N] [--buckets N]\n";
+    "                       [--structure auto|orthographic|cube|lists|bvh|view] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
   std::string scene, output, stats;

@@ -189,7 +189,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   if (debug || paths) {
     job.set_status("building the structure for rays", 0);
     const int64_t pixels = int64_t(request.camera.width) * request.camera.height;
-    traced_.build(request.structure, paths ? pixels * wanted * kRaysOfPath : pixels, programs_,
+    traced_.build(request.structure, request.camera, paths ? pixels * wanted * kRaysOfPath : pixels, programs_,
                   timer_);
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);

@@ -12,10 +12,11 @@ enum class Structure {
   kCube,          // six perspective views, lists as runs
   kLists,         // the same with the thesis' linked lists
   kBvh,           // a hierarchy of boxes, built on the host
+  kView,          // the camera's perspective view alone: what it does not see, no ray meets
 };
 
-constexpr std::array<std::string_view, 5> kStructureNames{"auto", "orthographic", "cube", "lists",
-                                                          "bvh"};
+constexpr std::array<std::string_view, 6> kStructureNames{"auto", "orthographic", "cube", "lists",
+                                                          "bvh",  "view"};
 
 // The structure of that name; Structure(-1) when there is none.
 constexpr Structure find_structure(std::string_view name) {

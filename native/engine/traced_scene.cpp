@@ -25,15 +25,20 @@ Structure TracedScene::choose(int64_t rays) const {
                                       triangles_->count(), rays));
 }
 
-void TracedScene::build(const StructureSettings& settings, int64_t rays,
-                        gl::ProgramCache& programs, gl::PassTimer& timer) {
+void TracedScene::build(const StructureSettings& settings, const gpu_scene::Camera& camera,
+                        int64_t rays, gl::ProgramCache& programs, gl::PassTimer& timer) {
   StructureSettings wanted = settings;
   if (wanted.structure == Structure::kAuto) wanted.structure = choose(rays);
-  const bool fresh = !tracer_ || made_ != wanted;
+  // A view's structure holds for one camera, and for one origin of the list.
+  const bool moved = wanted.structure == Structure::kView &&
+                     (!built_ || made_for_.world_to_camera != camera.world_to_camera ||
+                      made_for_.projection != camera.projection);
+  const bool fresh = !tracer_ || made_ != wanted || moved;
   if (fresh) {
     tracer_.reset();  // before the other takes its memory
-    tracer_ = make_tracer(wanted, device_);
+    tracer_ = make_tracer(wanted, device_, camera, triangles_->origin());
     made_ = wanted;
+    made_for_ = camera;
     built_ = warm_ = false;
   }
   if (built_) return;

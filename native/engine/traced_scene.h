@@ -27,9 +27,9 @@ class TracedScene {
   void update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu, gl::ProgramCache& programs,
               gl::PassTimer& timer);
   // Builds the structure that `settings` ask for, if it does not hold the list as it is now. kAuto
-  // takes the one that will have cost least after about `rays` rays.
-  void build(const StructureSettings& settings, int64_t rays, gl::ProgramCache& programs,
-             gl::PassTimer& timer);
+  // takes the one that will have cost least after about `rays` rays; kView is made for `camera`.
+  void build(const StructureSettings& settings, const gpu_scene::Camera& camera, int64_t rays,
+             gl::ProgramCache& programs, gl::PassTimer& timer);
   // What so many rays took, for later choices. The first after another structure was made do not
   // count, since they have compiled programs.
   void note_rays(int64_t rays, double ms);
@@ -51,6 +51,7 @@ class TracedScene {
   std::optional<tracing::TriangleList> triangles_;
   std::unique_ptr<tracing::Tracer> tracer_;
   StructureSettings made_;  // what tracer_ was made for
+  gpu_scene::Camera made_for_;
   bool built_ = false;
   bool warm_ = false;       // has traced
   tracing::CostBook costs_;

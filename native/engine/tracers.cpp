@@ -7,6 +7,8 @@
 
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 namespace panoptes::engine {
 
 void StructureSettings::check() const {
@@ -22,8 +24,30 @@ void StructureSettings::check() const {
          buckets);
 }
 
+namespace {
+
+// A frustum about the camera's axis that holds all that the camera sees, through a shifted lens too.
+primitive_tracer::SingleView single_view(const gpu_scene::Camera& camera, const glm::dvec3& origin) {
+  if (!camera.perspective())
+    fail("rays cannot be confined to the view of an orthographic camera: choose another structure");
+  const glm::dmat4 world = glm::inverse(camera.world_to_camera);
+  const glm::dmat4& p = camera.projection;  // p[column][row]
+  primitive_tracer::SingleView view;
+  view.eye = glm::vec3(glm::dvec3(world[3]) - origin);
+  view.right = glm::vec3(glm::normalize(glm::dvec3(world[0])));
+  view.up = glm::vec3(glm::normalize(glm::dvec3(world[1])));
+  view.forward = -glm::vec3(glm::normalize(glm::dvec3(world[2])));
+  view.half_extent = {float((1.0 + std::abs(p[2][0])) / p[0][0]),
+                      float((1.0 + std::abs(p[2][1])) / p[1][1])};
+  return view;
+}
+
+}  // namespace
+
 std::unique_ptr<tracing::Tracer> make_tracer(const StructureSettings& settings,
-                                             const gl::DeviceInfo& device) {
+                                             const gl::DeviceInfo& device,
+                                             const gpu_scene::Camera& camera,
+                                             const glm::dvec3& origin) {
   const bool lists = settings.structure == Structure::kLists;
   switch (settings.structure) {
     case Structure::kOrthographic: {
@@ -33,9 +57,11 @@ std::unique_ptr<tracing::Tracer> make_tracer(const StructureSettings& settings,
       return std::make_unique<primitive_tracer::OrthographicTracer>(s);
     }
     case Structure::kCube:
+    case Structure::kView:
     case Structure::kLists: {
       primitive_tracer::CubeSettings s;
       s.linked_lists = lists;
+      if (settings.structure == Structure::kView) s.single_view = single_view(camera, origin);
       s.tiles = settings.tiles;
       if (settings.buckets && lists) s.buckets = settings.buckets;
       if (settings.buckets && !lists) s.buckets_per_triangle = float(settings.buckets);
