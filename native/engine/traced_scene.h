@@ -7,6 +7,7 @@
 #include "gl/pass_timer.h"
 #include "gl/program.h"
 #include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/view.h"
 #include "scene/scene.h"
 #include "tracing/cost_book.h"
 #include "tracing/tracer.h"
