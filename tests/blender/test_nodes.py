@@ -93,6 +93,19 @@ def test_closure(scene, tmp_path, kind):
     check(tmp_path, [Tree('ShaderNode' + kind).compile()])
 
 
+@pytest.mark.parametrize('kind, words', [
+    ('Glossy', 'closure_glossy_multiscatter(hit, surface, '),
+    ('Glass', 'closure_glass_multiscatter(hit, surface, '),
+    ('Principled', '.multiscatter = true;')])
+def test_several_bounces_where_the_distribution_asks_for_them(scene, tmp_path, kind, words):
+    for distribution in ('GGX', 'MULTI_GGX'):
+        tree = Tree('ShaderNodeBsdf' + kind)
+        tree.surface.distribution = distribution
+        shader = tree.compile()
+        assert (words in shader.code) == (distribution == 'MULTI_GGX')
+        check(tmp_path, [shader])
+
+
 def test_material_without_nodes(scene, tmp_path):
     material = bpy.data.materials.new('Plain')
     if compat.VERSION >= (5, 0, 0):
