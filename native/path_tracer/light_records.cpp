@@ -38,6 +38,7 @@ struct Areas {
   glm::dvec3 x, y;  // whole sides or diameters, world space, metres
   bool round;
   double area;      // m2
+  bool square;      // the sides are square to each other
 };
 
 Areas areas_of(const scene::Light& lamp) {
@@ -47,6 +48,7 @@ Areas areas_of(const scene::Light& lamp) {
   a.round = lamp.shape == AreaShape::kDisk || lamp.shape == AreaShape::kEllipse;
   a.x = glm::dvec3(lamp.object_to_world[0]) * double(lamp.size_x);
   a.y = glm::dvec3(lamp.object_to_world[1]) * double(same ? lamp.size_x : lamp.size_y);
+  a.square = !a.round && std::abs(glm::dot(a.x, a.y)) <= 1e-5 * glm::length(a.x) * glm::length(a.y);
   a.area = glm::length(glm::cross(a.x, a.y)) * (a.round ? kPi / 4 : 1.0);
   return a;
 }
@@ -129,6 +131,7 @@ std::optional<DescribedLight> describe(const scene::Light& lamp, const glm::dvec
       describe_disk(lamp, center, d);
   }
   if (!d.seen) flags |= shared::RECORD_SINGULAR;
+  else if (lamp.type == LightType::kArea && areas_of(lamp).square) flags |= shared::RECORD_SQUARE;
   if (!shines(glm::vec3(d.bounds.intensity)) || !within(glm::dvec3(d.bounds.box.low), kFarthest) ||
       !within(glm::dvec3(d.bounds.box.high), kFarthest))
     return {};

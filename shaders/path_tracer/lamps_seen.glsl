@@ -49,6 +49,10 @@ vec3 weighed(uint light, vec3 from, vec3 normal, vec3 direction, float t_max, fl
   if (e.radiance == vec3(0.0) || scattering_pdf <= 0.0) return e.radiance;
   // What passes through walls is for samples alone.
   if ((record_flags(l) & RECORD_SHADOWLESS) != 0u) return vec3(0.0);
+#if LIGHT_AREAS
+  float solid_angle = near_rectangle(l, from).solid_angle;
+  if (solid_angle > 0.0) e.pdf = 1.0 / solid_angle;
+#endif
   float ratio = min(e.pdf, 1.0e37) * record_probability(l, from, normal) / scattering_pdf;
   return e.radiance / (1.0 + ratio * ratio);
 }

@@ -6,6 +6,7 @@
 #include "base/disk.glsl"
 #include "base/falloff.glsl"
 #include "path_tracer/lights_shared.h"
+#include "path_tracer/spherical_rectangle.glsl"
 
 layout(binding = 0) uniform usamplerBuffer light_records;  // as LightRecord
 
@@ -49,6 +50,17 @@ Emitted emitted_by_area(LightRecord l, float cosine, float distance2) {
 Emitted emitted_by_sun(LightRecord l, float cosine) {
   float pdf = 1.0 / (disk_area(l) * cosine * cosine * cosine);
   return Emitted(l.front.xyz * pdf, pdf);
+}
+
+// Less of the view, sr, and rounding would show; and then points that are even on a lamp do as well.
+const float LEAST_SOLID_ANGLE = 0.03;
+
+// A rectangle that is near enough to be sampled evenly by solid angle; that of others is 0.
+SphericalRectangle near_rectangle(LightRecord l, vec3 from) {
+  SphericalRectangle r = spherical_rectangle(l.place.xyz, l.edge_x.xyz, l.edge_y.xyz, from);
+  bool square = (record_flags(l) & RECORD_SQUARE) != 0u;
+  if (!square || r.solid_angle < LEAST_SOLID_ANGLE) r.solid_angle = 0.0;
+  return r;
 }
 
 // A shadow ray ends before the surface that it was sent to, by more than rounding.
@@ -99,7 +111,10 @@ void sample_record(LightRecord l, vec3 from, vec2 random, inout LightSample s) {
   }
 #endif
 #if LIGHT_AREAS
-  if (kind == KIND_RECTANGLE || kind == KIND_ELLIPSE) {
+  SphericalRectangle rectangle = near_rectangle(l, from);
+  if (rectangle.solid_angle > 0.0) {
+    point = from + sample_spherical_rectangle(rectangle, random);
+  } else if (kind == KIND_RECTANGLE || kind == KIND_ELLIPSE) {
     vec2 place = kind == KIND_ELLIPSE ? 0.5 * concentric_disk(random) : random - 0.5;
     point += place.x * l.edge_x.xyz + place.y * l.edge_y.xyz;
   }
@@ -144,5 +159,8 @@ void sample_record(LightRecord l, vec3 from, vec2 random, inout LightSample s) {
   if (cosine <= 0.0) return;
   Emitted e = is_round(kind) ? emitted_by_disk(l, kind, cosine, distance2)
                              : emitted_by_area(l, cosine, distance2);
+#if LIGHT_AREAS
+  if (rectangle.solid_angle > 0.0) e.pdf = 1.0 / rectangle.solid_angle;
+#endif
   set_lamp(flags, e, s);
 }

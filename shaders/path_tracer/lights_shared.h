@@ -18,6 +18,7 @@ const uint KIND_MASK = 255u;
 const uint RECORD_SINGULAR = 256u;    // without an area: only sampling finds it
 const uint RECORD_SHADOWLESS = 512u;
 const uint RECORD_VARIES = 1024u;     // radiance is another at each place: to be asked of the material
+const uint RECORD_SQUARE = 2048u;     // a rectangle whose sides are square to each other
 const uint RECORD_SEEN_BY_SHIFT = 16u;  // triangles: SEEN_BY_... bits of their instance
 
 struct LightRecord {

@@ -463,6 +463,37 @@ TEST_F(PathLights, ProbabilitiesSumToOne) {
     EXPECT_NEAR(sums[i].x * 2700 + nothing[i].x, 1, 5 * std::sqrt(0.25 / (64 * 256)));
 }
 
+// Near a rectangle, samples are even by solid angle: of their spread only the receiver's cosine and the
+// lamp's falloff are left.
+TEST_F(PathLights, NearRectanglesGiveLittleNoise) {
+  constexpr uint32_t kInvocations = 64, kRuns = 256;
+  TestScene s;
+  s.lights = {area({0, 0, 1}, {0.1f, 0, -1}, 200, scene::AreaShape::kRectangle, 4, 2)};
+  install(s);
+  for (const glm::vec3& p : {glm::vec3(0, 0, 0.8f), glm::vec3(1, 0.5f, 0), glm::vec3(-2, 1, 0.6f)}) {
+    const Place place{p, {0, 0, 1}};
+    const glm::dvec4 mean = run(kIrradiance, {place}, kInvocations, kRuns)[0];
+    const double variance = mean.y - mean.x * mean.x;
+    expect_unbiased({mean}, {irradiance(s.lights[0], place)}, kInvocations * kRuns);
+    // Of points that are even on the lamp.
+    double sum = 0, squares = 0;
+    constexpr int kSteps = 64;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+      const glm::vec3 q = scene::sample_light(s.lights[0], (float(i % kSteps) + 0.5f) / kSteps,
+                                              (float(i / kSteps) + 0.5f) / kSteps, p).position;
+      const glm::dvec3 way = glm::dvec3(q) - glm::dvec3(p);
+      const double d2 = glm::dot(way, way);
+      const double e = s.lights[0].power().g * std::max(0.0, way.z) *
+                       std::max(0.0, -glm::dot(way, glm::dvec3(s.lights[0].direction()))) / (d2 * d2);
+      sum += e / (kSteps * kSteps);
+      squares += e * e / (kSteps * kSteps);
+    }
+    EXPECT_LT(variance, 0.25 * (squares - sum * sum));
+    RecordProperty(fmt::format("variance_of_even_points_{}", p.z),
+                   fmt::format("{:.1f}", (squares - sum * sum) / variance));
+  }
+}
+
 // Every kind of sample and every kind of hit together give what samples alone give.
 TEST_F(PathLights, LampsThatRaysMeetShareTheirLightWithSamples) {
   constexpr uint32_t kInvocations = 64, kRuns = 400;
