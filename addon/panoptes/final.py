@@ -5,7 +5,7 @@ import time
 
 import bpy
 
-from . import passes, requests, session
+from . import passes, pieces, requests, session
 from .results import LayerResult
 from .time_left import TimeLeft, clock
 
@@ -43,7 +43,7 @@ def render(engine, depsgraph):
             names = [name for name in result.pass_names if name in filled]
             request['passes'] = names or ['Combined']
             request['live'] = not bpy.app.background
-            request['pieces'] = session.keep_pieces and requests.can_merge(request, warn)
+            request['pieces'] = session.keep_pieces and pieces.can_merge(request, warn)
             job = mirror.engine.render(request)
             cancelled = _follow(engine, job, result, request['settings'])
             # Who cancels keeps what there is.
@@ -51,7 +51,7 @@ def render(engine, depsgraph):
             if finished:
                 result.fill(job, names, partly=cancelled)
                 if request['pieces'] and not cancelled:
-                    session.pieces.append((layer.name, requests.merge_key(depsgraph.scene, request),
+                    session.pieces.append((layer.name, pieces.merge_key(depsgraph.scene, request),
                                            job.pieces()))
         finally:
             result.end(cancel=not finished)

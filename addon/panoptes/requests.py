@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From scenes and views to the request dictionaries of the native engine."""
 
-import json
-
 import numpy as np
 
 from . import lens
@@ -219,28 +217,6 @@ def _looked_through(depsgraph, space, region_data):
         return None
     camera = space.camera if space.use_local_camera else depsgraph.scene.camera
     return None if camera is None else camera.evaluated_get(depsgraph)
-
-
-def can_merge(request, warn):
-    """Tell whether the samples of a request can be merged with others; warns where they should be."""
-    settings = request['settings']
-    if settings.get('noise_threshold'):
-        warn('Samples that end at a noise threshold cannot be merged with others; set Noise Threshold to '
-             '0 to keep the pieces for that.')
-        return False
-    return 'debug_picture' not in settings
-
-
-def merge_key(scene, request):
-    """Return as JSON what must agree between requests whose samples are merged."""
-    key = {name: value for name, value in request.items()
-           if name not in ('samples', 'live', 'pieces', 'settings', 'view', 'projection')}
-    key.update(request['settings'])
-    key.pop('time_budget', None)
-    key['passes'] = sorted(request['passes'])
-    key['camera'] = [request['view'].tolist(), request['projection'].tolist()]
-    key['scene'], key['frame'] = scene.name, scene.frame_current_final
-    return json.dumps({name.replace('_', ' '): value for name, value in key.items()}, sort_keys=True)
 
 
 def _camera_frame(scene, space, region, region_data):

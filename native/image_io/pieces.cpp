@@ -31,6 +31,10 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path) {
 
 bool is_piece_part(const OIIO::ImageSpec& spec) { return spec.find_attribute(kLayer) != nullptr; }
 
+std::string text_of(const OIIO::ImageSpec& spec, const char* attribute) {
+  return std::string(spec.get_string_attribute(attribute));
+}
+
 // Calls `use` with the spec of each part that holds a piece, the input standing there.
 template <class F>
 void for_pieces(OIIO::ImageInput& input, F&& use) {
@@ -117,7 +121,7 @@ void write_file(const std::string& target, OIIO::ImageSpec picture,
 }
 
 int channel_index(const OIIO::ImageSpec& spec, Pass pass, int channel) {
-  const std::string part = std::string(spec.get_string_attribute("oiio:subimagename"));
+  const std::string part = text_of(spec, "oiio:subimagename");
   return spec.channelindex(channel_name(part, pass, channel));
 }
 
@@ -230,7 +234,7 @@ std::vector<LayerRange> find_pieces(const std::string& path) {
   std::vector<LayerRange> layers;
   const auto input = open_picture(path);
   for_pieces(*input, [&](const OIIO::ImageSpec& spec) {
-    const std::string name = spec.get_string_attribute(kLayer);
+    const std::string name = text_of(spec, kLayer);
     const uint32_t first = uint32_t(spec.get_int_attribute(kFirst));
     const auto known = std::find_if(layers.begin(), layers.end(),
                                     [&](const LayerRange& layer) { return layer.layer == name; });
@@ -238,7 +242,7 @@ std::vector<LayerRange> find_pieces(const std::string& path) {
         known != layers.end()
             ? *known
             : layers.emplace_back(
-                  LayerRange{name, spec.get_string_attribute(kSettings), first, first});
+                  LayerRange{name, text_of(spec, kSettings), first, first});
     layer.last = uint32_t(spec.get_int_attribute(kLast));
   });
   return layers;
@@ -252,11 +256,11 @@ std::vector<std::string> merge_pieces(std::span<const std::string> sources,
   for (const std::string& source : sources) {
     const auto input = open_picture(source);
     for_pieces(*input, [&](const OIIO::ImageSpec& spec) {
-      const std::string name = spec.get_string_attribute(kLayer);
+      const std::string name = text_of(spec, kLayer);
       std::shared_ptr<film::Pieces>& pieces = merged[name];
       if (!pieces) {
         pieces = std::make_shared<film::Pieces>();
-        layers.push_back({name, spec.get_string_attribute(kSettings), pieces});
+        layers.push_back({name, text_of(spec, kSettings), pieces});
       }
       take_up(*input, source, *pieces);
     });

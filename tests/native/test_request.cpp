@@ -53,6 +53,7 @@ TEST(RequestCheck, RefusesWhatMakesNoSense) {
     expect_refused([&](auto& r) { r.time_budget = budget; }, "budget");
     expect_refused([&](auto& r) { r.noise_threshold = budget; }, "threshold");
   }
+  expect_refused([](auto& r) { r.pieces = true, r.noise_threshold = 0.1; }, "cannot be merged");
 }
 
 engine::RenderStats stats() {
