@@ -20,6 +20,20 @@ def own_arguments():
     return sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
 
 
+def complete(parser, options):
+    """Gives options their width, height and scene; leaves with a sentence where --size, --scene or a count is wrong."""
+    try:
+        options.width, options.height = (int(part) for part in options.size.lower().split("x"))
+    except ValueError:
+        parser.error(f"the size {options.size} is not WIDTHxHEIGHT.")
+    sponza = ROOT.parent / "shared" / "scenes" / "sponza_crytek.blend"
+    options.scene = options.scene or str(sponza if sponza.is_file() else ROOT / "blend_scenes" / "atrium.blend")
+    if not Path(options.scene).is_file():
+        parser.error(f"there is no scene at {options.scene}.")
+    if min(options.width, options.height, options.repeat, options.samples) < 1:
+        parser.error("sizes and counts must be at least 1.")
+
+
 def register(engine):
     """Makes an engine known to Blender."""
     if engine == "PANOPTES":

@@ -29,7 +29,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
 import engines  # noqa: E402
-from engines import ENGINES, ROOT  # noqa: E402
+from engines import ENGINES  # noqa: E402
 
 ROWS = ("first", "opened", "again")
 
@@ -43,16 +43,7 @@ def parse_options():
     parser.add_argument("--json", action="store_true", help="print every measurement as JSON")
     parser.add_argument("--child", choices=ENGINES, help=argparse.SUPPRESS)
     options = parser.parse_args(engines.own_arguments())
-    try:
-        options.width, options.height = (int(part) for part in options.size.lower().split("x"))
-    except ValueError:
-        parser.error(f"the size {options.size} is not WIDTHxHEIGHT.")
-    sponza = ROOT.parent / "shared" / "scenes" / "sponza_crytek.blend"
-    options.scene = options.scene or str(sponza if sponza.is_file() else ROOT / "blend_scenes" / "atrium.blend")
-    if not Path(options.scene).is_file():
-        parser.error(f"there is no scene at {options.scene}.")
-    if min(options.width, options.height, options.repeat, options.samples) < 1:
-        parser.error("sizes and counts must be at least 1.")
+    engines.complete(parser, options)
     return options
 
 

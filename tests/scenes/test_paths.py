@@ -82,9 +82,9 @@ def light(passes):
 def test_paths_converge_to_cycles(scene, samples):
     if not renders.SHARED.joinpath("reference", f"{scene}.exr").is_file():
         pytest.skip(f"the reference of {scene} is not at {renders.SHARED}; PANOPTES_SHARED_SCENES can name its folder")
-    reference = light(reference_fit.reference_passes(scene))
-    height, width = reference["Combined"].shape[:2]
-    one, another = map(light, reference_fit.render(scene, [samples, samples], "primitive", (width, height)))
+    passes = reference_fit.reference_passes(scene)
+    reference = light(passes)
+    one, another = map(light, reference_fit.render(scene, [samples, samples], "primitive", passes))
     wrong = []
     for name, wanted in reference.items():
         found = reference_fit.agreement(one[name], another[name], wanted, reference_fit.REFERENCE_NOISE[scene], BLOCK)
