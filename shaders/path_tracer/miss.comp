@@ -42,7 +42,7 @@ void main() {
 #endif
 #if LAMPS_SEEN
   if (scatterings > 0u)
-    shining += lamps_seen(origin, path.normal, direction, frame.camera.w, path.scattering_pdf);
+    shining += lamps_seen(origin, path.normal, direction, FAR, path.scattering_pdf);
 #endif
 #if TRANSPARENT_FILM
   if (scatterings == 0u) {
