@@ -82,10 +82,11 @@ def shift(ours, theirs):
 
 
 def change(scene, **settings):
-    """Set attributes by path; `camera__` and `render__` begin paths from there."""
+    """Set attributes by path; `camera__`, `dof__` and `render__` begin paths from there."""
+    places = {'camera': scene.camera.data, 'dof': scene.camera.data.dof, 'render': scene.render}
     for path, value in settings.items():
         place, name = path.split('__')
-        setattr(scene.camera.data if place == 'camera' else scene.render, name, value)
+        setattr(places[place], name, value)
 
 
 CASES = {
@@ -123,6 +124,33 @@ def test_picture_is_that_of_cycles(blocks, tmp_path, settings):
     assert np.abs(shift(ours[..., 1], theirs[..., 1])).max() < 0.02
     assert ours[..., :3].mean() == pytest.approx(theirs[..., :3].mean(), rel=0.005)
     assert np.allclose(ours[..., 3], theirs[..., 3], atol=0.03)
+
+
+# Blocks of the middle row are in focus; the rest is blurred over several pixels.
+LENSES = {
+    'disk': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.05},
+    'blades': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.03, 'dof__aperture_blades': 3,
+               'dof__aperture_rotation': 0.4},
+    'anamorphic': {'dof__focus_distance': 8.0, 'dof__aperture_fstop': 0.08, 'dof__aperture_ratio': 2.5},
+    'orthographic': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 1.0, **CASES['orthographic']},
+}
+
+
+@pytest.mark.parametrize('settings', LENSES.values(), ids=LENSES.keys())
+def test_depth_of_field_is_that_of_cycles(blocks, tmp_path, settings):
+    blocks.panoptes.method, blocks.panoptes.bounces = 'primitive', 0
+
+    def render():
+        return render_combined(blocks, tmp_path)
+
+    sharp = render()
+    blocks.camera.data.dof.use_dof = True
+    change(blocks, **settings)
+    ours, theirs, again = render(), in_cycles(blocks, render), in_cycles(blocks, render, seed=1)
+    noise = distance(again[..., :3], theirs[..., :3])
+    assert distance(sharp[..., :3], theirs[..., :3]) > 5.0 * noise
+    assert distance(ours[..., :3], theirs[..., :3]) < 1.5 * noise
+    assert ours[..., :3].mean() == pytest.approx(theirs[..., :3].mean(), rel=0.01)
 
 
 @pytest.mark.parametrize('name', ['plain', 'clip', 'orthographic', 'pixel aspect', 'border'])
