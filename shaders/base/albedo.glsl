@@ -32,3 +32,12 @@ float ggx_separable_albedo(float alpha, float mu) {
   e = e * q + dot(a, vec4(0.9341, -0.0314, -0.5152, 0.2241));
   return clamp(e, 0.05, 1.0);
 }
+
+// Share of white light from everywhere that the sheen sends back: fits to quadrature.
+float sheen_albedo(float roughness, float nv) {
+  nv = clamp(nv, 0.0, 1.0);
+  float x = 1.0 - nv;
+  if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
+  float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
+  return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
+}

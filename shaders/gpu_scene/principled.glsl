@@ -91,8 +91,23 @@ void closure_principled_v4(inout Surface s, vec3 weight, Principled p) {
   float coat_ior = max(p.coat_ior, 1.0);
   float within = sqrt(max(1.0 - (1.0 - coat_cosine * coat_cosine) / (coat_ior * coat_ior), 1.0e-4));
   weight *= mix(vec3(1.0), pow(max(p.coat_tint, vec3(0.0)), vec3(1.0 / within)), min(coat, 1.0));
-  weight *= 1.0 - min(coat, 1.0) * fresnel_dielectric(coat_cosine, coat_ior);
-  add_sheen(s, weight * p.sheen * p.sheen_tint, clamp(p.sheen_roughness, 0.0, 1.0), p.normal);
+#ifdef LOBES_APART
+  float coat_f0 = reflectance_from_ior(coat_ior);
+  float coat_albedo = reflected_albedo(vec3(coat_f0), vec3(1.0), coat_ior,
+                                       clamp(p.coat_roughness, 0.0, 1.0), coat_cosine, s.seed).x;
+#else
+  float coat_albedo = fresnel_dielectric(coat_cosine, coat_ior);
+#endif
+  weight *= 1.0 - min(coat, 1.0) * coat_albedo;
+  p.sheen_roughness = clamp(p.sheen_roughness, 0.0, 1.0);
+  vec3 sheen = p.sheen * p.sheen_tint;
+  add_sheen(s, weight * sheen, p.sheen_roughness, p.normal);
+#ifdef LOBES_APART
+  // What the sheen sends back does not reach what lies below.
+  float taken = max(max(sheen.r, sheen.g), sheen.b) *
+                sheen_albedo(p.sheen_roughness, dot(p.normal, p.view));
+  weight *= 1.0 - clamp(taken, 0.0, 1.0);
+#endif
 
   float metal = p.metallic, glass = (1.0 - metal) * clamp(p.transmission, 0.0, 1.0);
   float dielectric = (1.0 - metal) * (1.0 - clamp(p.transmission, 0.0, 1.0));

@@ -1,4 +1,5 @@
 // Lobes and falloffs of direct light. Each lobe is without its cosine; Cycles is the reference.
+#include "base/albedo.glsl"
 #include "base/falloff.glsl"
 #include "base/scattering.glsl"
 
@@ -68,13 +69,4 @@ float coat_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
 float sheen_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
   vec3 h = half_vector(n, v, l);
   return sheen_lobe(roughness, dot(n, l), dot(n, v), dot(n, h), dot(l, h));
-}
-
-// Share of white light from everywhere that the sheen sends back: fits to quadrature.
-float sheen_albedo(float roughness, float nv) {
-  nv = clamp(nv, 0.0, 1.0);
-  float x = 1.0 - nv;
-  if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
-  float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
-  return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
 }

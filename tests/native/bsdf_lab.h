@@ -84,6 +84,14 @@ class BsdfLab {
   gl::ProgramCache programs_;
 };
 
+// One lab for all tests of a suite.
+class BsdfTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { lab = std::make_unique<BsdfLab>(); }
+  static void TearDownTestSuite() { lab.reset(); }
+  static inline std::unique_ptr<BsdfLab> lab;
+};
+
 // --- integrals over directions -------------------------------------------------------------------
 
 // All directions in cells: rings around `pole` that are the narrower the nearer to it they are, cut

@@ -8,11 +8,8 @@
 namespace panoptes::test {
 namespace {
 
-class BsdfClosures : public ::testing::Test {
+class BsdfClosures : public BsdfTest {
  protected:
-  static void SetUpTestSuite() { lab = std::make_unique<BsdfLab>(); }
-  static void TearDownTestSuite() { lab.reset(); }
-
   struct Albedo {
     double mean = 0, error = 0;  // and its standard error
   };
@@ -56,8 +53,6 @@ vec4 lab(uint i) {
     }
     return result;
   }
-
-  static inline std::unique_ptr<BsdfLab> lab;
 };
 
 // A plane under a white world, rendered by Cycles 3.4 with 65 536 samples. A back is listed where
@@ -120,11 +115,19 @@ TEST_F(BsdfClosures, WhiteThingsOfSeveralBouncesLoseNothing) {
         "p.multiscatter = true; p.base_color = white; p.specular_tint = white; p.roughness = 0.2;"
         "closure_principled_v4(surface, white, p);",
         "p.multiscatter = true; p.base_color = white; p.specular_tint = white; p.roughness = 0.7;"
-        "closure_principled_v4(surface, white, p);"})
+        "p.coat = 1.0; p.coat_roughness = 0.5; closure_principled_v4(surface, white, p);"})
     for (const Albedo& albedo : albedos(code, 3 << 15)) {
       EXPECT_NEAR(albedo.mean, 1, 0.005 + 3 * albedo.error) << code;
       EXPECT_LT(albedo.error, 0.004) << "too noisy to judge: " << code;
     }
+}
+
+TEST_F(BsdfClosures, ASheenTakesFromWhatLiesBelow) {
+  for (const Albedo& albedo :
+       albedos("p.base_color = p.specular_tint = p.sheen_tint = white; p.sheen = 1.0;"
+               "closure_principled_v4(surface, white, p);"))
+    // What the sheen takes is a fit.
+    EXPECT_NEAR(albedo.mean, 1, 0.01 + 3 * albedo.error);
 }
 
 // Blender 4.3's Cycles: metals of base colour .5, with roughness 1 and, Principled, .7.

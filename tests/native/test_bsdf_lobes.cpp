@@ -8,11 +8,8 @@
 namespace panoptes::test {
 namespace {
 
-class BsdfLobes : public ::testing::Test {
+class BsdfLobes : public BsdfTest {
  protected:
-  static void SetUpTestSuite() { lab = std::make_unique<BsdfLab>(); }
-  static void TearDownTestSuite() { lab.reset(); }
-
   // The share of white light from everywhere that goes to the viewer, by quadrature.
   static glm::dvec3 albedo(const LabLobes& lobes, const glm::dvec3& view, double power = 2) {
     const DirectionGrid grid(mirrored(view), power);
@@ -30,8 +27,6 @@ class BsdfLobes : public ::testing::Test {
       if (s.pdf > 0) sum += s.value.total() / double(s.pdf);
     return sum / double(draws);
   }
-
-  static inline std::unique_ptr<BsdfLab> lab;
 };
 
 // --- formulas ------------------------------------------------------------------------------------

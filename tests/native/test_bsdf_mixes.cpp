@@ -7,15 +7,10 @@
 namespace panoptes::test {
 namespace {
 
-class BsdfMixes : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() { lab = std::make_unique<BsdfLab>(); }
-  static void TearDownTestSuite() { lab.reset(); }
-  static inline std::unique_ptr<BsdfLab> lab;
-};
+class BsdfMixes : public BsdfTest {};
 
-// Evaluates `closures`, lines that begin with `if (on(k))`, for eight directions, two of them below. First all closures
-// together, with a seed for each group of eight; then each alone, `single` groups of eight.
+// Evaluates `closures`, lines that begin with `if (on(k))`, for eight directions, two of them below.
+// First all closures together, with a seed for each group of eight; then each alone, a group each.
 std::string mix(const std::string& closures, int seeds) {
   return "const int SEEDS = " + std::to_string(seeds) + R"(;
 vec3 lab_direction(uint i) {

@@ -7,12 +7,7 @@
 namespace panoptes::test {
 namespace {
 
-class BsdfSampling : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() { lab = std::make_unique<BsdfLab>(); }
-  static void TearDownTestSuite() { lab.reset(); }
-  static inline std::unique_ptr<BsdfLab> lab;
-};
+class BsdfSampling : public BsdfTest {};
 
 struct Case {
   const char* name;
