@@ -99,6 +99,35 @@ class Shaders : public ::testing::Test {
     sources.emplace(std::move(key), std::move(source));
   }
 
+  // All that paths may ask of lights: of the kind-th kind, or (5) of all; `many`: of several, with the
+  // world among them.
+  static gl::ProgramSource lights_program(int kind, bool many, bool seen) {
+    gl::ProgramSource source;
+    source.name = "lights";
+    source.stages = {{GL_COMPUTE_SHADER, "lights.comp"}};
+    source.snippets["lights.comp"] =
+        "#include \"path_tracer/lights.glsl\"\n"
+        "layout(local_size_x = 64) in;\n"
+        "layout(std430, binding = 0) buffer Results { vec4 results[]; };\n"
+        "void main() {\n"
+        "  vec3 from = results[0].xyz, normal = results[1].xyz, way = results[2].xyz;\n"
+        "  LightSample s;\n"
+        "  if (light_sample(from, normal, way, s)) results[3] = vec4(s.value, s.pdf);\n"
+        "  results[4] = vec4(lamps_seen(from, normal, way, FAR, 0.5),\n"
+        "                    light_pdf_primitive(from, normal, 1u, way, 2.0) +\n"
+        "                        light_pdf_world(from, normal, way));\n"
+        "}\n";
+    const char* kinds[5] = {"LIGHT_SUNS", "LIGHT_POINTS", "LIGHT_SPOTS", "LIGHT_AREAS", "LIGHT_TRIANGLES"};
+    for (int k = 0; k < 5; ++k)
+      source.defines.push_back(fmt::format("{} {}", kinds[k], int(kind == k || kind == 5)));
+    source.defines.push_back("LIGHT_ANY 1");
+    source.defines.push_back(fmt::format("LIGHT_LOCAL {}", int(kind != 0)));
+    source.defines.push_back(fmt::format("LIGHT_TREE {}", int(many || kind == 5)));
+    source.defines.push_back(fmt::format("LAMPS_SEEN {}", int(seen)));
+    source.defines.push_back(fmt::format("WORLD_SAMPLED {}", int(many)));
+    return source;
+  }
+
   static void enumerate() {
     const char* plain = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
                         "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
@@ -182,6 +211,9 @@ class Shaders : public ::testing::Test {
         for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
           add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));
     }
+
+    for (int kind = 0; kind < 6; ++kind)
+      for (int bits = 0; bits < 4; ++bits) add(lights_program(kind, bits & 1, bits & 2));
 
     for (const auto& [code, images] : {std::pair(kPlainWorld, 0), {kImageWorld, 1}}) {
       gpu_scene::GpuShading world;
