@@ -183,19 +183,6 @@ TEST(EngineJobs, ANoiseThresholdInASceneWithoutNoiseDoesNotEndItEarly) {
   EXPECT_EQ(*p.stats.estimated_error, 0);
 }
 
-TEST(EngineJobs, SamplesThatAreNoNumbersAreToldOf) {
-  TestScene s;
-  s.add_object(floor_at(0, 4), {s.add_material(emitter(glm::vec3(INFINITY)))});
-  shared_engine().edit([&](scene::Scene& scene) { s.install(scene); });
-  for (engine::Method method : {engine::Method::kRealtime, engine::Method::kPrimitive}) {
-    engine::RenderRequest r = request(still_life().camera, {}, 2);
-    r.method = method;
-    const Picture p = render(r);  // which expects numbers
-    ASSERT_EQ(p.stats.warnings.size(), 1u);
-    EXPECT_NE(p.stats.warnings[0].find("count as black"), std::string::npos);
-  }
-}
-
 TEST(EngineJobs, StatisticsAddUp) {
   set_scene(shared_engine());
   const Picture p = render(request(still_life().camera, {Pass::kDepth}, 3));
