@@ -163,9 +163,12 @@ void main() {
     }
 #endif
     if (largest(contribution) > 0.0) {
-      float facing = dot(lobes.geometric_normal, light.direction);
-      float away = facing < 0.0 ? -offset : offset;
-      if (facing > 0.0) away += bulge * clamp(1.0 - facing / TERMINATOR, 0.0, 1.0);
+      // Light from the side of the smooth normal does not come through the surface.
+      float away = -offset;
+      if (dot(lobes.smooth_normal, light.direction) >= 0.0) {
+        float facing = dot(lobes.geometric_normal, light.direction);
+        away = offset + bulge * clamp(1.0 - facing / TERMINATOR, 0.0, 1.0);
+      }
       vec3 origin = position + away * lobes.geometric_normal;
       shadow_rays[index] = TracedRay(origin.x, origin.y, origin.z, 0.0, light.direction.x,
                                      light.direction.y, light.direction.z,
