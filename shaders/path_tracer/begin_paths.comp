@@ -38,13 +38,14 @@ vec2 disk(vec2 u) {
   return radius * vec2(cos(angle), sin(angle));
 }
 
-// Uniform over a regular polygon in the unit circle: one of its triangles, folded to the square.
+// Uniform over a regular polygon in the unit circle, with the middle of an edge on the x axis as in
+// Cycles: one of its triangles, folded to the square.
 vec2 polygon(vec2 u, float corners) {
   float corner = floor(u.x * corners);
   u.x = u.x * corners - corner;
   float root = sqrt(u.x), half_angle = 3.14159265359 / corners;
   float along = root * cos(half_angle), across = (2.0 * u.y - 1.0) * root * sin(half_angle);
-  float angle = (2.0 * corner + 1.0) * half_angle;
+  float angle = 2.0 * corner * half_angle;
   return along * vec2(cos(angle), sin(angle)) + across * vec2(-sin(angle), cos(angle));
 }
 #endif

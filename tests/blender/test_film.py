@@ -126,13 +126,13 @@ def test_picture_is_that_of_cycles(blocks, tmp_path, settings):
     assert np.allclose(ours[..., 3], theirs[..., 3], atol=0.03)
 
 
-# Blocks of the middle row are in focus; the rest is blurred over several pixels.
+# One depth is in focus; blocks at others are blurred over several pixels, well beyond the noise of either engine.
 LENSES = {
-    'disk': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.05},
-    'blades': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.03, 'dof__aperture_blades': 3,
+    'disk': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.02},
+    'blades': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.012, 'dof__aperture_blades': 3,
                'dof__aperture_rotation': 0.4},
-    'anamorphic': {'dof__focus_distance': 8.0, 'dof__aperture_fstop': 0.08, 'dof__aperture_ratio': 2.5},
-    'orthographic': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 1.0, **CASES['orthographic']},
+    'anamorphic': {'dof__focus_distance': 8.0, 'dof__aperture_fstop': 0.03, 'dof__aperture_ratio': 2.5},
+    'orthographic': {'dof__focus_distance': 12.1, 'dof__aperture_fstop': 0.5, **CASES['orthographic']},
 }
 
 
@@ -148,7 +148,7 @@ def test_depth_of_field_is_that_of_cycles(blocks, tmp_path, settings):
     change(blocks, **settings)
     ours, theirs, again = render(), in_cycles(blocks, render), in_cycles(blocks, render, seed=1)
     noise = distance(again[..., :3], theirs[..., :3])
-    assert distance(sharp[..., :3], theirs[..., :3]) > 5.0 * noise
+    assert distance(sharp[..., :3], theirs[..., :3]) > 3.0 * noise
     assert distance(ours[..., :3], theirs[..., :3]) < 1.5 * noise
     assert ours[..., :3].mean() == pytest.approx(theirs[..., :3].mean(), rel=0.01)
 
