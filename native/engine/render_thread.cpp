@@ -203,7 +203,13 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   uint32_t done = 0;
   while (done < wanted) {
     job.set_status(fmt::format("sample {} of {}", done + 1, wanted), float(done) / float(wanted));
-    render_sample(job, request.first_sample + done);
+    try {
+      render_sample(job, request.first_sample + done);
+    } catch (const Cancelled&) {
+      // The samples before are whole, unless this one has begun to join them.
+      if (done == 0 || (paths && path_tracer_.torn())) throw;
+      break;
+    }
     film_.end_sample(request.first_sample + done);
     ++done;
     gl::check_errors("render");

@@ -49,6 +49,7 @@ void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& pla
   camera_ = camera;
   settings_ = settings;
   rays_ = 0;
+  torn_ = false;
   list_origin_ = triangles.origin();
   const Settings& paths = settings.paths;
   {
@@ -184,6 +185,7 @@ void PathTracer::render_sample(uint32_t index, bool first, const Surroundings& a
     begin_paths(count, settings_.paths.raster_primary, view, film);
     trace_paths(count, around, cancelled);
     resolve(count, film);
+    torn_ = start + count < pixels;
   }
 }
 

@@ -60,6 +60,8 @@ class PathTracer {
   void render_sample(uint32_t index, bool first, const Surroundings& around, film::Film& film,
                      const std::atomic<bool>& cancelled);
 
+  // True while the film holds a part of a sample's pixels, after it was cancelled.
+  bool torn() const { return torn_; }
   // Rays of all samples since begin(), those of shadows among them.
   int64_t rays() const { return rays_; }
   // Frees what paths need.
@@ -101,6 +103,7 @@ class PathTracer {
   bool depth_passes_ = false, alpha_ = false;
   Lights lights_;
   int64_t rays_ = 0;
+  bool torn_ = false;
 
   gpu_scene::ViewBlock camera_block_, list_block_;
   RasterPrimary raster_;

@@ -14,7 +14,7 @@ struct PathState {
   float least_pdf;       // of all its directions
   uint normal;           // pack_unit() of the smooth normal that it left
   uint turns;            // as path_state.glsl packs it
-  float length;          // from the camera on, metres
+  float way;              // from the camera on, metres
 };
 SHARED_ASSERT_SIZE(PathState, 32)
 

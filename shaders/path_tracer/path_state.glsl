@@ -14,7 +14,7 @@ struct Path {
   float scattering_pdf, least_pdf;
   vec3 normal;  // smooth, of the surface that it left; 0 where that transmits
   uint turns;
-  float length;
+  float way;  // from the camera on, metres
 #if LIGHT_PASSES
   vec3 diffuse_share, glossy_share;
 #endif
@@ -55,7 +55,7 @@ Path fetch_path(uint i) {
   path.least_pdf = uintBitsToFloat(texel1.x);
   path.turns = texel1.z;
   path.normal = (path.turns & FROM_BOTH_SIDES) != 0u ? vec3(0.0) : unpack_unit(texel1.y);
-  path.length = uintBitsToFloat(texel1.w);
+  path.way = uintBitsToFloat(texel1.w);
 #if LIGHT_PASSES
   path.diffuse_share = uintBitsToFloat(texelFetch(states, int(i) * STATE_TEXELS + 2).xyz);
   path.glossy_share = uintBitsToFloat(texelFetch(states, int(i) * STATE_TEXELS + 3).xyz);

@@ -145,12 +145,11 @@ void main() {
                      path_pair(key, frame.range.x, dimension + LIGHT_CHOICE_PAIR).x);
   if (light_sample(position, both_sides ? vec3(0.0) : lobes.smooth_normal, choice, light)) {
     BsdfValue value = bsdf_evaluate(lobes, light.direction);
-    // What scattered rays of that kind cannot meet is for light samples alone.
-    float weight = power_heuristic(light.pdf, value.pdf);
-    uint met_by = light.singular ? 0u : light.seen_by;
-    if ((met_by & SEEN_BY_DIFFUSE) != 0u) value.diffuse *= weight;
-    if ((met_by & SEEN_BY_GLOSSY) != 0u) value.glossy *= weight;
-    if ((met_by & SEEN_BY_TRANSMISSION) != 0u) value.transmission *= weight;
+    // A surface that rays of a kind do not meet lights nothing that scatters by that kind, as in Cycles.
+    float weight = light.singular ? 1.0 : power_heuristic(light.pdf, value.pdf);
+    value.diffuse *= (light.seen_by & SEEN_BY_DIFFUSE) != 0u ? weight : 0.0;
+    value.glossy *= (light.seen_by & SEEN_BY_GLOSSY) != 0u ? weight : 0.0;
+    value.transmission *= (light.seen_by & SEEN_BY_TRANSMISSION) != 0u ? weight : 0.0;
     vec3 all = value.diffuse + value.glossy + value.transmission;
     vec3 contribution = path.throughput * all * light.value / light.pdf;
     bool traced = light.t_max > 0.0;
@@ -223,7 +222,7 @@ void main() {
   new_states[state] = uvec4(floatBitsToUint(path.throughput),
                             floatBitsToUint(next.singular ? 0.0 : next.pdf));
   new_states[state + 1u] = uvec4(floatBitsToUint(least), pack_unit(lobes.smooth_normal), path.turns,
-                                 floatBitsToUint(path.length + t));
+                                 floatBitsToUint(path.way + t));
 #if LIGHT_PASSES
   new_states[state + 2u] = uvec4(floatBitsToUint(path.diffuse_share), 0u);
   new_states[state + 3u] = uvec4(floatBitsToUint(path.glossy_share), 0u);

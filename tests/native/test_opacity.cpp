@@ -234,7 +234,7 @@ TEST_F(Opacity, FollowsTheMaterialAtTheHit) {
     }
   trace(rays, OpacityMode::kTransmittance);
   for (size_t i = 0; i < rays.size(); ++i)
-    EXPECT_EQ(transmittance[i], clear[i] ? glm::vec4(0.75f, 0.5f, 0.25f, 0) : glm::vec4(0)) << i;
+    EXPECT_EQ(glm::vec3(transmittance[i]), clear[i] ? glm::vec3(0.75f, 0.5f, 0.25f) : glm::vec3(0)) << i;
 }
 
 TEST_F(Opacity, EachMaterialDecidesItsOwnRays) {

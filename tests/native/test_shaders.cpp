@@ -4,6 +4,8 @@
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
+#include "path_tracer/programs.h"
+#include "path_tracer/raster_primary.h"
 #include "path_tracer/world_map.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
@@ -99,8 +101,22 @@ class Shaders : public ::testing::Test {
     sources.emplace(std::move(key), std::move(source));
   }
 
-  // All that paths may ask of lights: of the kind-th kind, or (5) of all; `many`: of several, with the
-  // world among them.
+  // What path_tracer::Lights says of lights of the kind-th kind, or (5) of all; `many`: of several, with
+  // the world among them.
+  static std::vector<std::string> light_defines(int kind, bool many, bool seen) {
+    std::vector<std::string> defines;
+    const char* kinds[5] = {"LIGHT_SUNS", "LIGHT_POINTS", "LIGHT_SPOTS", "LIGHT_AREAS", "LIGHT_TRIANGLES"};
+    for (int k = 0; k < 5; ++k)
+      defines.push_back(fmt::format("{} {}", kinds[k], int(kind == k || kind == 5)));
+    defines.push_back("LIGHT_ANY 1");
+    defines.push_back(fmt::format("LIGHT_LOCAL {}", int(kind != 0)));
+    defines.push_back(fmt::format("LIGHT_TREE {}", int(many || kind == 5)));
+    defines.push_back(fmt::format("LAMPS_SEEN {}", int(seen)));
+    defines.push_back(fmt::format("WORLD_SAMPLED {}", int(many)));
+    return defines;
+  }
+
+  // All that paths may ask of them.
   static gl::ProgramSource lights_program(int kind, bool many, bool seen) {
     gl::ProgramSource source;
     source.name = "lights";
@@ -117,15 +133,33 @@ class Shaders : public ::testing::Test {
         "                    light_pdf_primitive(from, normal, 1u, way, 2.0) +\n"
         "                        light_pdf_world(from, normal, way));\n"
         "}\n";
-    const char* kinds[5] = {"LIGHT_SUNS", "LIGHT_POINTS", "LIGHT_SPOTS", "LIGHT_AREAS", "LIGHT_TRIANGLES"};
-    for (int k = 0; k < 5; ++k)
-      source.defines.push_back(fmt::format("{} {}", kinds[k], int(kind == k || kind == 5)));
-    source.defines.push_back("LIGHT_ANY 1");
-    source.defines.push_back(fmt::format("LIGHT_LOCAL {}", int(kind != 0)));
-    source.defines.push_back(fmt::format("LIGHT_TREE {}", int(many || kind == 5)));
-    source.defines.push_back(fmt::format("LAMPS_SEEN {}", int(seen)));
-    source.defines.push_back(fmt::format("WORLD_SAMPLED {}", int(many)));
+    source.defines = light_defines(kind, many, seen);
     return source;
+  }
+
+  // Each program of paths that materials and worlds are no part of, for one set of options.
+  static void add_paths(const path_tracer::ProgramOptions& options, const film::Film& film) {
+    for (bool listed : {false, true}) {
+      for (bool centre : {false, true})
+        add(path_tracer::begin_paths_program(options, listed, centre));
+      add(path_tracer::resolve_program(options, listed, film));
+      add(path_tracer::arrive_program(options, listed));
+    }
+    add(path_tracer::shade_program(options));
+    add(path_tracer::miss_program(nullptr, options));
+    add(path_tracer::depth_program(film));
+    add(path_tracer::occlusion_rays_program(options));
+    if (options.occlusion) add(path_tracer::occlusion_program(options));
+  }
+
+  static path_tracer::ProgramOptions path_options(int bits, bool rich) {
+    path_tracer::ProgramOptions options;
+    options.surfaces = surfaces(bits);
+    options.add_passes(rich ? film::PassSet().set() : film::with_divisors({}));
+    if (rich) options.light_defines = light_defines(5, true, true);
+    options.clamp = options.filter_glossy = options.lens = options.alpha = rich;
+    options.shines = options.deferred = options.shadow_maps = rich;
+    return options;
   }
 
   static void enumerate() {
@@ -144,6 +178,10 @@ class Shaders : public ::testing::Test {
             add(rasterize::raster_program(&m, {.depth_only = depth_only}));
         for (int bits = 0; bits < 16; ++bits) add(rasterize::surface_program(m, surfaces(bits)));
         add(rasterize::emitter_program(m));
+        for (int bits = 0; bits < 16; ++bits)
+          add(path_tracer::fetch_program(m, path_options(bits, false)));
+        for (bool rich : {false, true})
+          add(path_tracer::arrive_emitter_program(m, path_options(0, rich)));
         for (tracing::OpacityOptions opacity : {tracing::OpacityOptions{false, false},
                                                 tracing::OpacityOptions{false, true},
                                                 tracing::OpacityOptions{true, true}})
@@ -212,6 +250,12 @@ class Shaders : public ::testing::Test {
           add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));
     }
 
+    for (bool rich : {false, true}) {
+      film.start(4, 4, rich ? film::PassSet().set() : film::PassSet(), {.moments = rich});
+      for (int bits = 0; bits < 16; ++bits) add_paths(path_options(bits, rich), film);
+    }
+    add(path_tracer::visible_hits_program());
+
     for (int kind = 0; kind < 6; ++kind)
       for (int bits = 0; bits < 4; ++bits) add(lights_program(kind, bits & 1, bits & 2));
 
@@ -222,6 +266,10 @@ class Shaders : public ::testing::Test {
       add(realtime::background_program(world));
       add(realtime::world_project_program(world));
       add(path_tracer::world_map_program(world));
+      for (bool rich : {false, true}) {
+        add(path_tracer::miss_program(&world, path_options(0, rich)));
+        add(path_tracer::arrive_world_program(world, path_options(0, rich)));
+      }
     }
   }
 
