@@ -169,9 +169,11 @@ void main() {
         away = offset + bulge * clamp(1.0 - facing / TERMINATOR, 0.0, 1.0);
       }
       vec3 origin = position + away * lobes.geometric_normal;
-      shadow_rays[index] = TracedRay(origin.x, origin.y, origin.z, 0.0, light.direction.x,
-                                     light.direction.y, light.direction.z,
-                                     min(light.t_max, frame.camera.w), NO_PRIMITIVE, SEEN_BY_SHADOW,
+      // Aimed anew from there: at a slant even this offset would lead into what the light lies on.
+      bool ends = light.t_max < frame.camera.w;
+      vec3 aim = ends ? position + light.t_max * light.direction - origin : light.direction;
+      shadow_rays[index] = TracedRay(origin.x, origin.y, origin.z, 0.0, aim.x, aim.y, aim.z,
+                                     ends ? 1.0 : frame.camera.w, NO_PRIMITIVE, SEEN_BY_SHADOW,
                                      hash(seed), index);
       arrivals[index] = Arrival(contribution.r, contribution.g, contribution.b, light.source,
                                 scatterings + 1u, 0u, 0u, 0u);

@@ -111,6 +111,27 @@ TEST(Paths, LampsLightAFloorAsTheirFormulasSay) {
     }
 }
 
+TEST(Paths, LightArrivesFromASurfaceThatLiesNearlyInTheSamePlane) {
+  // A glowing square 5 mm above a floor, seen by the floor beside it at less than a degree.
+  constexpr double kHeight = 0.005, kHalf = 0.5;
+  TestScene s;
+  s.add_object(floor_at(0, 3), {s.add_material(lambert())});
+  s.add_object(floor_at(float(kHeight), float(kHalf)), {s.add_material(emitter(glm::vec3(1000)))});
+  const gpu_scene::Camera camera = orthographic({0.9, 0, 3}, {0.9, 0, 0}, 0.02, 4, 4);
+  engine::RenderRequest r = paths(camera, {Pass::kDiffDir}, 256);
+  r.paths.bounces.total = 0;
+  const glm::dvec2 at(0.9, 0);
+  constexpr int n = 400;
+  double due = 0;
+  for (int i = 0; i < n * n; ++i) {
+    const glm::dvec2 d = at + kHalf - 2 * kHalf / n * (glm::dvec2(i % n, i / n) + 0.5);
+    const double squared = glm::dot(d, d) + kHeight * kHeight;
+    due += 1000 / kPi * kHeight * kHeight / (squared * squared) * 4 * kHalf * kHalf / (n * n);
+  }
+  const Mean m = mean_of(render(s, r)[Pass::kDiffDir], 0, 3);
+  EXPECT_NEAR(m.value / due, 1, 0.05);
+}
+
 TEST(Paths, PassesAddUpToCombined) {
   TestScene s;
   const Id mixed = add(s,
