@@ -194,6 +194,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);
   for (const std::string& warning : traced_.warnings()) warnings.push_back(warning);
+  if (paths)
+    for (const std::string& warning : path_tracer_.warnings()) warnings.push_back(warning);
   glFinish();
   gl::check_errors("upload");
   const double build_ms = ms_since(start);

@@ -62,12 +62,15 @@ class PathTracer {
 
   // True while the film holds a part of a sample's pixels, after it was cancelled.
   bool torn() const { return torn_; }
+  // What of the lights could not be done as asked, for the artist.
+  const std::vector<std::string>& warnings() const { return lights_.warnings(); }
   // Rays of all samples since begin(), those of shadows among them.
   int64_t rays() const { return rays_; }
   // Frees what paths need.
   void release();
 
  private:
+  void describe_frame(const scene::Bounds& bounds);
   void reserve(uint32_t paths);
   void begin_paths(uint32_t count, bool centre, const shared::View& view, const film::Film& film);
   void trace_paths(uint32_t count, const Surroundings& around, const std::atomic<bool>& cancelled);
