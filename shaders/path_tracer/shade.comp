@@ -49,8 +49,9 @@ layout(location = 1) uniform uint depth;  // surfaces that the paths have met be
 const uint FIRST_PAIR = 2u, PAIRS = 4u;
 const uint BSDF_PAIR = 0u, CHANCE_PAIR = 1u, LIGHT_PAIR = 2u, LIGHT_CHOICE_PAIR = 3u;
 
-// From this scattering on paths may end by chance.
-const uint ROULETTE_FROM = 2u;
+// From this scattering on paths may end by chance. Earlier would be faster for as much more noise, of
+// which dark corners would show most.
+const uint ROULETTE_FROM = 4u;
 
 // Where bumps of coarse facets are lit as the smooth surface that their normals tell of would be:
 // shadow rays begin there while the light is this near to the facet's horizon (Cycles' measure).
