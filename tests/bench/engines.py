@@ -11,6 +11,8 @@ import bpy
 
 ROOT = Path(__file__).resolve().parents[2]
 ENGINES = ("CYCLES", "PANOPTES")
+# Limits of paths that no measurement varies.
+TRANSPARENT_BOUNCES, FILTER_GLOSSY = 16, 1.0
 # The slowest scene at hand takes seconds; this only ends what hangs.
 TIME_LIMIT_SECONDS = 900
 
@@ -56,13 +58,38 @@ def choose(scene, engine, size, samples=1):
         scene.panoptes.method, scene.panoptes.samples = "realtime", samples
 
 
+def choose_paths(scene, samples, bounces):
+    """Sets, after choose(), that the engine traces paths: so many samples, the same limits in both, nothing clamped."""
+    if scene.render.engine == "CYCLES":
+        cycles = scene.cycles
+        cycles.samples = samples
+        cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
+        cycles.transparent_max_bounces = TRANSPARENT_BOUNCES
+        cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+        cycles.blur_glossy = FILTER_GLOSSY
+    else:
+        settings = scene.panoptes
+        settings.method, settings.samples, settings.bounces = "primitive", samples, bounces
+        settings.primitive.transparent_bounces = TRANSPARENT_BOUNCES
+        settings.primitive.filter_glossy = FILTER_GLOSSY
+
+
+def save_picture(scene, path):
+    """Writes what was rendered last as a linear EXR."""
+    image = scene.render.image_settings
+    if hasattr(image, "media_type"):  # since Blender 5.0 the format depends on it
+        image.media_type = "IMAGE"
+    image.file_format, image.color_depth, image.color_mode = "OPEN_EXR", "32", "RGB"
+    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+
+
 def measure(scene):
     """Seconds of one render, by the clock and of the processor."""
     began, used = time.perf_counter(), time.process_time()
     bpy.ops.render.render()
     seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
     stats = json.loads(scene.panoptes.last_stats) if scene.render.engine == "PANOPTES" and scene.panoptes.last_stats else {}
-    return {"seconds": seconds, "cpu_seconds": cpu_seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms") if key in stats}}
+    return {"seconds": seconds, "cpu_seconds": cpu_seconds, **{key: stats[key] for key in ("sync_ms", "build_ms", "trace_ms", "total_ms", "rays") if key in stats}}
 
 
 def report(found):

@@ -2,6 +2,7 @@
 """How long traced paths take beside Cycles, and how much noise they leave; a measurement, never a test.
 
     ./panoptes bench paths [--size 480x270] [--scene FILE.blend] [--samples 64] [--repeat 1] [--json]
+    ./panoptes bench paths --figure 7.8 [--pictures FOLDER] [the same options]
     blender -b --factory-startup -P tests/bench/paths_vs_cycles.py -- [the same options]
 
 Both engines render the same samples a pixel with the same limits, on the processor: no adaptive sampling, no denoising,
@@ -12,6 +13,8 @@ no clamping. Measured is one bpy.ops.render.render in a fresh process, by turns:
     rmse     of Combined against the finished picture reference/NAME.exr beside the scene, where there is one of that
              size; linear
     even     seconds until the noise would be that of Cycles: seconds times the square of the quotient of both RMSE
+
+With --figure, a figure of the dissertation is made anew in place of this: figures.py says which there are, and how.
 """
 
 import argparse
@@ -25,12 +28,13 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "metrics")]
 import engines  # noqa: E402
+import figures  # noqa: E402
 import images  # noqa: E402
 import metrics  # noqa: E402
 from engines import ENGINES, ROOT  # noqa: E402
 
 # What the finished pictures were made with.
-BOUNCES, TRANSPARENT_BOUNCES, FILTER_GLOSSY = 8, 16, 1.0
+BOUNCES = 8
 
 
 def parse_options():
@@ -38,12 +42,19 @@ def parse_options():
     parser.add_argument("--size", default="480x270", help="width x height in pixels")
     parser.add_argument("--scene", help="a .blend; Sponza beside the checkout if there is one, else our atrium")
     parser.add_argument("--samples", type=int, default=64, help="of both engines")
-    parser.add_argument("--repeat", type=int, default=1, help="processes for each engine; the median counts")
+    parser.add_argument("--repeat", type=int, default=1,
+                        help="processes for each engine, or renders of each part of a figure; the median counts")
+    parser.add_argument("--figure", choices=figures.FIGURES, help="make this figure of the dissertation")
+    parser.add_argument("--pictures", metavar="FOLDER", help="with --figure: write it there as a PNG")
     parser.add_argument("--json", action="store_true", help="print every measurement as JSON")
     parser.add_argument("--out", help=argparse.SUPPRESS)
     parser.add_argument("--child", choices=ENGINES, help=argparse.SUPPRESS)
     options = parser.parse_args(engines.own_arguments())
     engines.complete(parser, options)
+    if options.pictures and not options.figure:
+        parser.error("--pictures needs --figure.")
+    if options.pictures and not Path(options.pictures).is_dir():
+        parser.error(f"there is no folder {options.pictures}.")
     return options
 
 
@@ -56,24 +67,9 @@ def run_child(options):
     bpy.ops.wm.open_mainfile(filepath=options.scene)
     scene = bpy.context.scene
     engines.choose(scene, options.child, (options.width, options.height), options.samples)
-    if options.child == "CYCLES":
-        cycles = scene.cycles
-        cycles.samples = options.samples
-        cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = BOUNCES
-        cycles.transparent_max_bounces = TRANSPARENT_BOUNCES
-        cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-        cycles.blur_glossy = FILTER_GLOSSY
-    else:
-        settings = scene.panoptes
-        settings.method, settings.bounces = "primitive", BOUNCES
-        settings.primitive.transparent_bounces = TRANSPARENT_BOUNCES
-        settings.primitive.filter_glossy = FILTER_GLOSSY
+    engines.choose_paths(scene, options.samples, BOUNCES)
     found = engines.measure(scene)
-    image = scene.render.image_settings
-    if hasattr(image, "media_type"):  # since Blender 5.0 the format depends on it
-        image.media_type = "IMAGE"
-    image.file_format, image.color_depth, image.color_mode = "OPEN_EXR", "32", "RGB"
-    bpy.data.images["Render Result"].save_render(options.out, scene=scene)
+    engines.save_picture(scene, options.out)
     engines.report(found)
 
 
@@ -91,8 +87,14 @@ def error(picture, scene):
 
 def main():
     options = parse_options()
+    if options.child and options.figure:
+        figures.run_child(options)
+        return
     if options.child:
         run_child(options)
+        return
+    if options.figure:
+        figures.run(options, __file__)
         return
     runs = {engine: [] for engine in ENGINES}
     with tempfile.TemporaryDirectory() as folder:
