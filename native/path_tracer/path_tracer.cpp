@@ -53,7 +53,7 @@ void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& pla
   options_.filter_glossy = paths.filter_glossy > 0 && options_.surfaces.glossy;
   options_.lens = runs(plan, "depth_of_field");
   options_.alpha = alpha_;
-  options_.shines = options_.surfaces.emission || gpu.world() || lights_.any();
+  options_.shines = options_.surfaces.emission || gpu.world() || lights_.lamps_seen();
   options_.deferred = lights_.world_sampled() || lights_.emitters_vary();
   options_.transparent_film = settings.transparent_film;
   options_.shadow_maps = paths.shadow_maps && lights_.lamp_count() > 0;
