@@ -66,11 +66,14 @@ def find_socket(sockets, name):
 
 def uses_nodes(owner):
     """Tell whether a material, world or light is described by its node tree."""
-    if owner.node_tree is None or len(owner.node_tree.nodes) == 0:
+    if owner.node_tree is None:
         return False
     # From 5.0 on (lamps: 5.2) the switch is always on, and reading it is deprecated.
     since = (5, 2, 0) if isinstance(owner, bpy.types.Light) else (5, 0, 0)
-    return VERSION >= since or owner.use_nodes
+    if VERSION >= since:
+        return len(owner.node_tree.nodes) > 0
+    # A tree without nodes is black, as in Cycles.
+    return owner.use_nodes
 
 
 def displacement_method(material):
