@@ -1,5 +1,7 @@
 #include "path_tracer/decide.h"
 
+#include "rasterize/decide.h"
+
 #include <fmt/format.h>
 
 namespace panoptes::path_tracer {
@@ -24,15 +26,7 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                      : !surfaces ? "there is no surface to light"
                                  : fmt::format("{} lamp{}, one of which is chosen wherever a path turns",
                                                lamps, plural(lamps))});
-  effects.push_back({"emissive_light", facts.emission && surfaces,
-                     facts.emission ? "surfaces that emit light shine on others"
-                                    : "no material emits light"});
-  effects.push_back({"world_light", facts.world && surfaces,
-                     !facts.world ? "the world is black"
-                     : !surfaces  ? "there is no surface to light"
-                                  : "the world shines on the surfaces"});
-  effects.push_back({"world_background", facts.world,
-                     facts.world ? "the world may be seen behind the scene" : "the world is black"});
+  for (plan::Effect& effect : rasterize::decide_glow(facts)) effects.push_back(std::move(effect));
   const bool shadows = surfaces && (casting > 0 || facts.emission || facts.world);
   effects.push_back({"shadow_rays", shadows,
                      shadows ? "light is followed to where it comes from"

@@ -33,6 +33,21 @@ plan::Effects decide_surfaces(const scene::Facts& facts) {
   return effects;
 }
 
+plan::Effects decide_glow(const scene::Facts& facts) {
+  const bool surfaces = facts.triangles > 0;
+  plan::Effects effects;
+  effects.push_back({"emissive_light", facts.emission && surfaces,
+                     facts.emission ? "surfaces that emit light shine on others"
+                                    : "no material emits light"});
+  effects.push_back({"world_light", facts.world && surfaces,
+                     !facts.world ? "the world is black"
+                     : !surfaces  ? "there is no surface to light"
+                                  : "the world shines on the surfaces"});
+  effects.push_back({"world_background", facts.world,
+                     facts.world ? "the world may be seen behind the scene" : "the world is black"});
+  return effects;
+}
+
 plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) {
   plan::Effects effects = decide_surfaces(facts);
   const char* kinds[4] = {"point", "sun", "spot", "area"};

@@ -1,5 +1,7 @@
 #include "realtime/decide.h"
 
+#include "rasterize/decide.h"
+
 #include <fmt/format.h>
 
 namespace panoptes::realtime {
@@ -12,15 +14,7 @@ plan::Effects decide(const scene::Facts& facts) {
                      lamps == 0  ? "the scene has no lamp that shines"
                      : !surfaces ? "there is no surface to light"
                                  : fmt::format("{} lamp{}", lamps, lamps > 1 ? "s" : "")});
-  effects.push_back({"emissive_light", facts.emission && surfaces,
-                     facts.emission ? "surfaces that emit light shine on others"
-                                    : "no material emits light"});
-  effects.push_back({"world_light", facts.world && surfaces,
-                     !facts.world ? "the world is black"
-                     : !surfaces  ? "there is no surface to light"
-                                  : "the world shines on the surfaces"});
-  effects.push_back({"world_background", facts.world,
-                     facts.world ? "the world may be seen behind the scene" : "the world is black"});
+  for (plan::Effect& effect : rasterize::decide_glow(facts)) effects.push_back(std::move(effect));
   return effects;
 }
 
