@@ -90,8 +90,8 @@ class PanoptesPrimitiveSettings(bpy.types.PropertyGroup):
         default='TRACED')
     structure: EnumProperty(
         name='Structure',
-        description='How rays find the triangles that they meet. The picture is the same with each, the '
-                    'time is not',
+        description="How rays find the triangles that they meet. The picture is the same with each but the "
+                    "camera's view, the time is not",
         items=(
             ('auto', 'Automatic', 'What is expected to take the least time, by what each has taken so far'),
             ('orthographic', 'Orthographic View', 'One view along the shortest side of the scene: fast to '

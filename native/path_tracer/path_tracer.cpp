@@ -40,7 +40,6 @@ void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& pla
     gl::PassScope scope(timer_, "lights");
     lights_.update(scene, gpu, triangles, programs_, timer_);
   }
-  alpha_ = runs(plan, "alpha");
   options_ = {};
   options_.surfaces = rasterize::GBufferOptions::of(plan);
   options_.add_passes(passes);
@@ -52,7 +51,7 @@ void PathTracer::begin(const gpu_scene::Camera& camera, const plan::Effects& pla
   options_.clamp = paths.clamp_direct > 0 || paths.clamp_indirect > 0;
   options_.filter_glossy = paths.filter_glossy > 0 && options_.surfaces.glossy;
   options_.lens = runs(plan, "depth_of_field");
-  options_.alpha = alpha_;
+  options_.alpha = runs(plan, "alpha");
   options_.shines = options_.surfaces.emission || gpu.world() || lights_.lamps_seen();
   options_.deferred = lights_.world_sampled() || lights_.emitters_vary();
   options_.transparent_film = settings.transparent_film;
@@ -89,10 +88,11 @@ void PathTracer::describe_frame(const scene::Bounds& bounds) {
   };
   frame_.camera = glm::vec4(glm::vec3(glm::dvec3(world[3]) - list_origin_),
                             4 * glm::length(extent));
-  frame_.lens_x = axis(c, s, std::max(lens.focus_distance, 1e-6));
+  const glm::dvec2 depths = gpu_scene::clip_depths(camera_);
+  // What is nearer than the near plane is not seen, so nothing there can be in focus.
+  frame_.lens_x = axis(c, s, std::max(lens.focus_distance, depths.x));
   frame_.lens_y = axis(-s, c, lens.blades);
-  const glm::vec2 depths(gpu_scene::clip_depths(camera_));
-  frame_.clip = {depths.x, depths.y, settings_.filter_width, view.filtering.y};
+  frame_.clip = {float(depths.x), float(depths.y), settings_.filter_width, view.filtering.y};
   frame_.clamps = {paths.clamp_direct, paths.clamp_indirect,
                    paths.filter_glossy > 0 ? 1 / paths.filter_glossy : 0.0f, paths.ao_distance};
   frame_.limits = {paths.bounces.total, paths.bounces.diffuse, paths.bounces.glossy,

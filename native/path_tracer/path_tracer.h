@@ -103,7 +103,7 @@ class PathTracer {
   ProgramOptions options_;
   glm::dvec3 list_origin_{0};
   shared::PathFrame frame_{};
-  bool depth_passes_ = false, alpha_ = false;
+  bool depth_passes_ = false;
   Lights lights_;
   int64_t rays_ = 0;
   bool torn_ = false;

@@ -117,7 +117,7 @@ void PathTracer::trace_shadows(uint32_t count, const Surroundings& around) {
   batch.passed = &shadow_passed_;
   batch.most_layers = uint32_t(settings_.paths.bounces.transparent);
   opacity_.trace(around.tracer, around.triangles, around.scene, batch,
-                 alpha_ ? tracing::OpacityMode::kTransmittance : tracing::OpacityMode::kAnyHit,
+                 options_.alpha ? tracing::OpacityMode::kTransmittance : tracing::OpacityMode::kAnyHit,
                  false, programs_);
   rays_ += opacity_.rays();
 }

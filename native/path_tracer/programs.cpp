@@ -11,11 +11,6 @@ namespace {
 
 using film::Pass;
 
-// Passes that are known without a sum: they are written straight into the film.
-bool summed(Pass pass) {
-  return pass != Pass::kDepth && pass != Pass::kPosition && pass != Pass::kSampleCount;
-}
-
 bool splits_light(Pass pass) {
   constexpr std::array split{Pass::kDiffDir, Pass::kDiffInd,  Pass::kGlossDir,
                              Pass::kGlossInd, Pass::kTransDir, Pass::kTransInd};
@@ -56,7 +51,8 @@ void ProgramOptions::add_passes(const film::PassSet& wanted) {
   passes = {"COMBINED"};
   light_passes = occlusion = false;
   for (int i = 1; i < film::kPassCount; ++i) {
-    if (!wanted[size_t(i)] || !summed(Pass(i))) continue;
+    // Others are written straight into the film, or made by it.
+    if (!wanted[size_t(i)] || film::info(Pass(i)).kind != film::PassKind::kSum) continue;
     constexpr size_t kPrefix = 5;  // of "FILM_..."
     passes.emplace_back(film::info(Pass(i)).define.substr(kPrefix));
     light_passes |= splits_light(Pass(i));

@@ -12,8 +12,6 @@
 
 namespace panoptes::path_tracer {
 
-class Lights;
-
 struct ProgramOptions {
   rasterize::GBufferOptions surfaces;
   std::vector<std::string> light_defines;  // of Lights
