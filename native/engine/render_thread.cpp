@@ -172,7 +172,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
     plan = plan::make_plan(scene.facts(), {samples, request.soft_shadows,
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes, request.debug_picture, paths,
-                                           {request.paths, request.camera.lens.radius > 0}});
+                                           {request.paths, request.camera.lens.radius > 0},
+                                           request.occlusion});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,

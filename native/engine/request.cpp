@@ -55,6 +55,7 @@ void RenderRequest::check() const {
          fmt::join(ray_picture::kKindNames, ", "));
   structure.check();
   paths.check();
+  occlusion.check();
 }
 
 std::string RenderStats::to_json() const {

@@ -1,6 +1,7 @@
 // What a caller asks of a frame, and what it is told of it.
 #pragma once
 
+#include "ambient_occlusion/settings.h"
 #include "engine/structure.h"
 #include "film/passes.h"
 #include "gpu_scene/view.h"
@@ -42,6 +43,7 @@ struct RenderRequest {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;
   StructureSettings structure;  // for rays
   path_tracer::Settings paths;
+  ambient_occlusion::Settings occlusion;  // of Real-time
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;

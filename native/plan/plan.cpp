@@ -1,5 +1,6 @@
 #include "plan/plan.h"
 
+#include "ambient_occlusion/decide.h"
 #include "film/decide.h"
 #include "rasterize/decide.h"
 #include "ray_picture/decide.h"
@@ -25,6 +26,8 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     append(rasterize::decide(facts, {settings.samples, settings.soft_shadows,
                                       settings.filter_penumbrae}));
     append(realtime::decide(facts));
+    append(ambient_occlusion::decide(
+        facts, {settings.occlusion, settings.passes[size_t(film::Pass::kAo)], settings.samples}));
   }
   append(film::decide(settings.passes));
   if (settings.force_all_effects)

@@ -1,6 +1,7 @@
 // Composes what the techniques decided into the plan of a frame: which effects run, and why.
 #pragma once
 
+#include "ambient_occlusion/settings.h"
 #include "film/passes.h"
 #include "path_tracer/decide.h"
 #include "plan/effect.h"
@@ -18,6 +19,7 @@ struct PlanSettings {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
   bool path_tracing = false;       // Primitive tracing, not Real-time
   path_tracer::DecideSettings paths;
+  ambient_occlusion::Settings occlusion;  // of Real-time
 };
 
 Effects make_plan(const scene::Facts& facts, const PlanSettings& settings);

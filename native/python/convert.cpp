@@ -129,6 +129,52 @@ path_tracer::Settings path_settings(const py::dict& dict) {
   return s;
 }
 
+template <class E, size_t N>
+E named(const py::dict& dict, const char* key, const std::array<std::string_view, N>& names) {
+  const auto name = get<std::string>(dict, key, std::string(names[0]));
+  const E found = ambient_occlusion::find_name<E>(names, name);
+  if (!ambient_occlusion::known(names, found))
+    fail("'{}' of ambient occlusion cannot be '{}': choose one of {}", key, name,
+         fmt::join(names, ", "));
+  return found;
+}
+
+ambient_occlusion::Settings occlusion_settings(const py::dict& dict) {
+  namespace ao = ambient_occlusion;
+  static const std::set<std::string> known{
+      "estimator",       "distance", "strength",           "samples",         "importance_sampling",
+      "initial_samples", "phantoms", "phantom_resolution", "phantom_cameras", "secondary_views",
+      "filter",          "picture",  "deep_shadows"};
+  for (const auto& item : dict)
+    if (!known.count(item.first.cast<std::string>()))
+      fail("ambient occlusion has no setting '{}': please report it",
+           item.first.cast<std::string>());
+  ao::Settings s;
+  s.estimator = named<ao::Estimator>(dict, "estimator", ao::kEstimatorNames);
+  s.distance = get(dict, "distance", s.distance);
+  s.strength = get(dict, "strength", s.strength);
+  s.samples = get(dict, "samples", s.samples);
+  s.importance_sampling = get(dict, "importance_sampling", s.importance_sampling);
+  s.initial_samples = get(dict, "initial_samples", s.initial_samples);
+  s.secondary_views = get(dict, "secondary_views", s.secondary_views);
+  s.phantoms = named<ao::Phantoms>(dict, "phantoms", ao::kPhantomsNames);
+  s.phantom_resolution = get(dict, "phantom_resolution", s.phantom_resolution);
+  s.filter = named<ao::Filter>(dict, "filter", ao::kFilterNames);
+  s.deep_shadows = get(dict, "deep_shadows", s.deep_shadows);
+  s.picture = named<ao::Picture>(dict, "picture", ao::kPictureNames);
+  const auto cameras = get(dict, "phantom_cameras", py::list());
+  if (cameras.size() > size_t(ao::kMostPhantomCameras))
+    fail("{} phantom cameras are more than can be used: choose {} at most", cameras.size(),
+         ao::kMostPhantomCameras);
+  for (const auto& item : cameras) {
+    const auto camera = item.cast<py::dict>();
+    gpu_scene::Camera& c = s.phantom_cameras[size_t(s.phantom_camera_count++)];
+    c.world_to_camera = wide_matrix(camera, "view");
+    c.projection = wide_matrix(camera, "projection");
+  }
+  return s;
+}
+
 }  // namespace
 
 engine::RenderRequest request(const py::dict& dict) {
@@ -167,7 +213,7 @@ engine::RenderRequest request(const py::dict& dict) {
       "tiles",                "buckets",             "bounces",          "diffuse_bounces",
       "glossy_bounces",       "transmission_bounces", "transparent_bounces", "clamp_direct",
       "clamp_indirect",       "filter_glossy",       "shadow_maps",      "raster_primary",
-      "ao_distance"};
+      "ao_distance",          "occlusion"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -190,6 +236,7 @@ engine::RenderRequest request(const py::dict& dict) {
   r.structure.tiles = get(settings, "tiles", 0);
   r.structure.buckets = get(settings, "buckets", 0);
   r.paths = path_settings(settings);
+  r.occlusion = occlusion_settings(get(settings, "occlusion", py::dict()));
   return r;
 }
 

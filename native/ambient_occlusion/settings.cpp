@@ -1,0 +1,42 @@
+#include "ambient_occlusion/settings.h"
+
+#include "base/error.h"
+
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace panoptes::ambient_occlusion {
+
+namespace {
+
+template <class E, size_t N>
+void check_name(const std::array<std::string_view, N>& names, E value, const char* what) {
+  if (!known(names, value))
+    fail("there is no {} number {}: choose one of {}", what, int(value), fmt::join(names, ", "));
+}
+
+void check_range(int value, int least, int most, const char* what) {
+  if (value < least || value > most)
+    fail("{} {} of ambient occlusion are out of range: choose {} to {}", value, what, least, most);
+}
+
+}  // namespace
+
+void Settings::check() const {
+  check_name(kEstimatorNames, estimator, "estimator of ambient occlusion");
+  check_name(kPhantomsNames, phantoms, "mode of phantom views");
+  check_name(kFilterNames, filter, "mode of the occlusion filter");
+  check_name(kPictureNames, picture, "picture of ambient occlusion");
+  if (!(distance > 0) || !std::isfinite(distance))
+    fail("a distance of {} m for ambient occlusion is out of range: choose more than 0", distance);
+  if (!(strength >= 0 && strength <= 1) || !(deep_shadows >= 0 && deep_shadows <= 1))
+    fail("strengths of ambient occlusion and deep shadows must lie in 0 to 1: set them again");
+  check_range(samples, 1, 256, "samples");
+  check_range(initial_samples, 1, 256, "initial samples");
+  check_range(secondary_views, 0, kMostSecondaryViews, "secondary views");
+  check_range(phantom_resolution, 16, 4096, "texels of phantom views");
+  check_range(phantom_camera_count, 0, kMostPhantomCameras, "phantom cameras");
+}
+
+}  // namespace panoptes::ambient_occlusion
