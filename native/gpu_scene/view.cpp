@@ -85,7 +85,7 @@ glm::dvec2 clip_depths(const Camera& camera) {
   return depths;
 }
 
-shared::View camera_view(const Camera& camera, glm::dvec2 jitter) {
+LightView as_light_view(const Camera& camera, glm::dvec2 jitter) {
   const glm::dmat4 world = glm::inverse(camera.world_to_camera);
   const glm::dmat4& p = camera.projection;  // p[column][row]
   const bool perspective = camera.perspective();
@@ -94,14 +94,18 @@ shared::View camera_view(const Camera& camera, glm::dvec2 jitter) {
                                   : -glm::dvec2(p[3][0], p[3][1]) * half;
   center += jitter * 2.0 * half / glm::dvec2(camera.width, camera.height);
   const glm::dvec2 depths = clip_depths(camera);
-  return make_view(glm::dvec3(world[3]), glm::normalize(glm::dvec3(world[0])),
-                   glm::normalize(glm::dvec3(world[1])), -glm::normalize(glm::dvec3(world[2])),
-                   center, half, depths.x, depths.y, perspective, camera.width, camera.height);
+  return {glm::dvec3(world[3]), glm::normalize(glm::dvec3(world[0])),
+          glm::normalize(glm::dvec3(world[1])), -glm::normalize(glm::dvec3(world[2])),
+          half.x, half.y, depths.x, depths.y, perspective, center};
 }
 
-shared::View light_view(const LightView& l, int resolution) {
+shared::View camera_view(const Camera& camera, glm::dvec2 jitter) {
+  return light_view(as_light_view(camera, jitter), {camera.width, camera.height});
+}
+
+shared::View light_view(const LightView& l, glm::ivec2 texels) {
   return make_view(l.origin, l.x, l.y, l.axis, l.shift, {l.half_x, l.half_y}, l.near_depth,
-                   l.far_depth, l.perspective, resolution, resolution);
+                   l.far_depth, l.perspective, texels.x, texels.y);
 }
 
 }  // namespace panoptes::gpu_scene

@@ -1,4 +1,4 @@
-// Makes views: of the camera with its place in a pixel, and of a lamp's shadow map.
+// Makes views: of the camera with its place in a pixel, and of shadow maps.
 #pragma once
 
 #include "gpu_scene/view_shared.h"
@@ -35,9 +35,9 @@ glm::dvec2 clip_depths(const Camera& camera);
 // The camera's view of one sample. `jitter` moves the image by a part of a pixel.
 shared::View camera_view(const Camera& camera, glm::dvec2 jitter);
 
-// A box-shaped or pyramid-shaped view for a shadow map of `resolution` texels a side. x, y and axis
-// are unit and square to each other; half_x and half_y are half extents (orthographic: metres,
-// perspective: tangents), shifted by `shift` (same units).
+// A box-shaped or pyramid-shaped view, as of a shadow map. x, y and axis are unit and square to each
+// other; half_x and half_y are half extents (orthographic: metres, perspective: tangents), shifted by
+// `shift` (same units).
 struct LightView {
   glm::dvec3 origin;
   glm::dvec3 x, y, axis;
@@ -46,6 +46,10 @@ struct LightView {
   bool perspective;
   glm::dvec2 shift{0, 0};
 };
-shared::View light_view(const LightView& light, int resolution);
+// What `light` sees in an image of so many texels.
+shared::View light_view(const LightView& light, glm::ivec2 texels);
+
+// What the camera sees in the sample that `jitter` belongs to, as camera_view() has it.
+LightView as_light_view(const Camera& camera, glm::dvec2 jitter);
 
 }  // namespace panoptes::gpu_scene

@@ -1,3 +1,4 @@
+#include "rasterize/shadow_face.h"
 #include "rasterize/shadow_maps.h"
 
 #include <algorithm>
@@ -78,27 +79,6 @@ shared::Light describe(const MeshLight& light, const glm::dvec3& camera_origin) 
   return l;
 }
 
-shared::ShadowFace describe(const gpu_scene::LightView& face, const glm::dvec3& camera_origin,
-                            int resolution) {
-  const auto vec = [](const glm::dvec3& v, double w) {
-    return glm::vec4(glm::vec3(v), float(w));
-  };
-  const double texel = 2.0 * std::max(face.half_x, face.half_y) / resolution;
-  const double range = face.far_depth - face.near_depth;
-  shared::ShadowFace f{};
-  f.origin = vec(face.origin - camera_origin, texel);
-  f.x = vec(face.x / face.half_x, face.shift.x / face.half_x);
-  f.y = vec(face.y / face.half_y, face.shift.y / face.half_y);
-  f.axis = vec(face.axis, face.perspective ? 1.0 : 0.0);
-  f.half_extent = {float(face.half_x), float(face.half_y), 0, float(resolution)};
-  f.depth = face.perspective
-                ? glm::vec4(float(face.near_depth * face.far_depth / range),
-                            float(-face.near_depth / range), float(face.near_depth), 0)
-                : glm::vec4(float(-1.0 / range), float(face.far_depth / range),
-                            float(face.near_depth), 0);
-  return f;
-}
-
 // The views of a lamp's shadow map while it stands at `sample`.
 ShadowViews shadow_views(const scene::Light& lamp, const scene::LightSample& sample,
                          const glm::vec2& texel_shift, const Placement& placement) {
@@ -152,7 +132,8 @@ void append(LightSet& set, PlacedLight placed, const Placement& placement) {
   }
   for (const auto& view : placed.views) {
     shared::ShadowFace face{};
-    if (view) face = describe(*view, placement.camera_origin, placed.resolution);
+    if (view)
+      face = shadow_face(*view, placement.camera_origin, glm::ivec2(placed.resolution));
     face.half_extent.z = view ? float(batch.layers++) : -1.0f;
     set.faces.push_back(face);
   }

@@ -11,8 +11,8 @@
 #include "gpu_scene/lights_shared.h"
 #include "gpu_scene/view.h"
 #include "gpu_scene/view_block.h"
+#include "rasterize/depth_views.h"
 #include "rasterize/emitter_lights.h"
-#include "rasterize/g_buffer.h"
 #include "rasterize/shadow_views.h"
 
 #include <glm/glm.hpp>
@@ -81,13 +81,11 @@ class ShadowMaps {
               const shared::View& camera, const gpu_scene::GpuScene& scene,
               gl::ProgramCache& programs, gl::PassTimer& timer, gpu_scene::ViewBlock& view_block,
               bool keep);
-  void bind(int unit) const;
-  void release();
+  void bind(int unit) const { maps_.bind(unit); }
+  void release() { maps_.release(); }
 
  private:
-  gl::Texture maps_;
-  gl::Framebuffer framebuffer_;
-  gl::Sampler sampler_;
+  DepthViews maps_;
 };
 
 }  // namespace panoptes::rasterize

@@ -39,8 +39,9 @@ struct ShadowFace {
   vec4 x, y;         // xyz: unit vectors divided by half_extent
   vec4 axis;         // xyz: unit; w: 1 = perspective
   vec4 half_extent;  // x, y: metres, perspective: tangents; z: layer of the map, -1 for
-                     // none; w: texels a side that the face uses of its layer
-  vec4 depth;        // stored = x / depth + y (perspective), x * depth + y; z: nearest depth
+                     // none; w: texels along x that the face uses of its layer
+  vec4 depth;        // stored = x / depth + y (perspective), x * depth + y; z: nearest depth;
+                     // w: texels along y, which shadow maps have as many of as along x
 };
 SHARED_ASSERT_SIZE(ShadowFace, 96)
 

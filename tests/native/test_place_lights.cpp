@@ -74,7 +74,7 @@ TEST(PlaceLights, FacesReadTheMapsAsTheyAreDrawn) {
         continue;
       }
       const gpu_scene::LightView& view = *drawn_view;
-      const shared::View drawn = gpu_scene::light_view(view, 64);
+      const shared::View drawn = gpu_scene::light_view(view, {64, 64});
       for (const glm::dvec3& p : corners(kRoom)) {
         const glm::dvec4 clip =
             glm::dmat4(drawn.clip_from_relative) * glm::dvec4(p - view.origin, 1);

@@ -194,7 +194,7 @@ TEST(CameraCheck, ACamerasUniformScaleIsNoDegeneracy) {
 
 TEST(LightViews, SpanTheirHalfExtents) {
   const gpu_scene::LightView box{{1, 2, 3}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 2, 3, -5, 11, false};
-  const shared::View view = gpu_scene::light_view(box, 64);
+  const shared::View view = gpu_scene::light_view(box, {64, 64});
   const auto clip = [&](const glm::vec3& p) {
     return glm::vec3(view.clip_from_relative * glm::vec4(p, 1));
   };
