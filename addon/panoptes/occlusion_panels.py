@@ -15,7 +15,6 @@ class PANOPTES_PT_occlusion(EnginePanel, bpy.types.Panel):
     """What darkens the world's light in Real-time; for paths only how far their AO pass looks."""
 
     bl_label = 'Ambient Occlusion'
-    bl_options = {'DEFAULT_CLOSED'}
 
     @classmethod
     def poll(cls, context):
