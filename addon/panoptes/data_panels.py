@@ -5,7 +5,7 @@ import bpy
 from bpy_extras.node_utils import find_node_input
 
 from . import compat
-from .panels import EnginePanel
+from .engine_panel import EnginePanel
 
 # Objects with a surface that rays can meet.
 _GEOMETRY = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT', 'CURVES', 'POINTCLOUD', 'VOLUME'}

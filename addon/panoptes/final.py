@@ -25,7 +25,8 @@ def render(engine, depsgraph):
     layer = depsgraph.view_layer
     request = requests.final(depsgraph, (), warn)
     asked = passes.enabled(layer)
-    _warn_of_black(asked, request['method'], warn)
+    if depsgraph.scene.panoptes.debug_picture == 'none':
+        _warn_of_black(asked, request['method'], warn)
     size = (request['width'], request['height'])
     with session.exclusive(wait=True):
         # From here on no 3D View starts another job.

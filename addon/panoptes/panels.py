@@ -6,29 +6,8 @@ import textwrap
 
 import bpy
 
-from . import passes, requests, session
-
-ENGINE = 'PANOPTES'
-
-
-class EnginePanel:
-    """Common part of all panels; they are in the Render tab unless they say otherwise."""
-
-    bl_space_type = 'PROPERTIES'
-    bl_region_type = 'WINDOW'
-    bl_context = 'render'
-    COMPAT_ENGINES = {ENGINE}
-
-    @classmethod
-    def poll(cls, context):
-        """Show the panel for Panoptes only."""
-        return context.engine in cls.COMPAT_ENGINES
-
-    def _column(self):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column()
-
+from . import occlusion_panels, passes, requests, session
+from .engine_panel import EnginePanel
 
 class PANOPTES_PT_take_over(EnginePanel, bpy.types.Panel):
     """The way from Cycles' settings to ours."""
@@ -74,7 +53,7 @@ class PANOPTES_PT_sampling_limits(EnginePanel, bpy.types.Panel):
 
 
 class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
-    """Pictures of what rays cost."""
+    """Pictures of rays and of ambient occlusion at work."""
 
     bl_label = 'Debug'
     bl_parent_id = 'PANOPTES_PT_sampling'
@@ -85,7 +64,7 @@ class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
         settings = context.scene.panoptes
         column = self._column()
         column.prop(settings, 'debug_picture')
-        if settings.debug_picture != 'none' and not _traces_paths(context):
+        if requests.shows_rays(settings) and not _traces_paths(context):
             _draw_structure(column, settings.primitive)
 
 
@@ -268,4 +247,4 @@ class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
 
 CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_debug,
            PANOPTES_PT_light_paths, PANOPTES_PT_light_path_kinds, PANOPTES_PT_clamping, PANOPTES_PT_rays,
-           PANOPTES_PT_shadows, PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)
+           PANOPTES_PT_shadows, *occlusion_panels.CLASSES, PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)

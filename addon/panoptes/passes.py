@@ -48,7 +48,7 @@ PASSES = (
     Pass('TransCol', 3, 'RGB', 'COLOR', 'use_pass_transmission_color', paths=True),
     Pass('Emit', 3, 'RGB', 'COLOR', 'use_pass_emit'),
     Pass('Env', 3, 'RGB', 'COLOR', 'use_pass_environment'),
-    Pass('AO', 3, 'RGB', 'COLOR', 'use_pass_ambient_occlusion', paths=True),
+    Pass('AO', 3, 'RGB', 'COLOR', 'use_pass_ambient_occlusion'),
     # The name that it has in Cycles, which makes room for it just so.
     Pass('Debug Sample Count', 1, 'X', 'VALUE', 'panoptes.use_pass_sample_count', paths=True, ours=True),
 )

@@ -21,6 +21,8 @@ def merge_key(scene, request):
     key = {name: value for name, value in request.items()
            if name not in ('samples', 'live', 'pieces', 'settings', 'view', 'projection')}
     key.update(request['settings'])
+    for name, value in key.pop('occlusion', {}).items():
+        key[f'occlusion_{name}'] = value
     key.pop('time_budget', None)
     key['passes'] = sorted(request['passes'])
     key['camera'] = [request['view'].tolist(), request['projection'].tolist()]

@@ -5,6 +5,8 @@ import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
                        StringProperty)
 
+from . import occlusion_properties
+
 
 class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
     """Options of the Real-time method."""
@@ -166,19 +168,22 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
         default=False)
     debug_picture: EnumProperty(
         name='Debug Picture',
-        description='Show rays at work in place of the scene. Numbers have the colours black 0, blue 3, '
-                    'cyan 15, green 63, yellow 255, red 1023 and white from 4095 on, which the view '
-                    'transform Standard leaves as they are',
+        description='Show rays or ambient occlusion at work in place of the scene; the view transform '
+                    'Standard leaves the colours as they are. Numbers of rays are black 0, blue 3, cyan '
+                    '15, green 63, yellow 255, red 1023 and white from 4095 on. Pictures of occlusion '
+                    'are of that in Real-time, whatever the method, and become smoother with samples',
         items=(
             ('none', 'None', 'Show the scene'),
             ('steps', 'Steps', "Nodes or cells that a pixel's ray visits"),
             ('tests', 'Tests', "Triangles that a pixel's ray is tested with"),
             ('lists', 'Lists', "Triangles in the longest list that a pixel's ray goes through"),
             ('tiles', 'Tiles', "The cell in which a pixel's ray ends, each in a colour of its own"),
+            *occlusion_properties.PICTURES,
         ),
         default='none')
     realtime: PointerProperty(type=PanoptesRealtimeSettings)
     primitive: PointerProperty(type=PanoptesPrimitiveSettings)
+    ambient_occlusion: PointerProperty(type=occlusion_properties.PanoptesOcclusionSettings)
     last_stats: StringProperty(
         name='Last Statistics', description='Statistics of the last final render, as JSON',
         options={'HIDDEN', 'SKIP_SAVE'})
@@ -191,8 +196,8 @@ class PanoptesViewLayerSettings(bpy.types.PropertyGroup):
         name='Sample Count', description='Deliver how many samples each pixel has got', default=False)
 
 
-_CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, PanoptesSceneSettings,
-            PanoptesViewLayerSettings)
+_CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, occlusion_properties.PanoptesOcclusionSettings,
+            PanoptesSceneSettings, PanoptesViewLayerSettings)
 
 
 def register():

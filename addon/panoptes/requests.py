@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from . import lens
+from . import cameras, lens, occlusion
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
@@ -16,20 +16,15 @@ class BadRequest(RuntimeError):
 
 
 def method(settings):
-    """Return the method that is used for what `scene.panoptes.method` asks: 'realtime' or 'primitive'."""
-    return 'primitive' if settings.method == 'primitive' else 'realtime'
+    """Return the method that is used for what `scene.panoptes` asks: 'realtime' or 'primitive'."""
+    # Pictures of occlusion are of that in Real-time.
+    paths = settings.method == 'primitive' and occlusion.picture(settings) == 'none'
+    return 'primitive' if paths else 'realtime'
 
 
-def _inverted(matrix):
-    """Return the inverse of a matrix in double precision, or the matrix where there is none.
-
-    Blender's own inverse is in single precision: a camera at 1000 km would be off by centimetres.
-    """
-    matrix = np.array(matrix, np.float64)
-    try:
-        return np.linalg.inv(matrix)
-    except np.linalg.LinAlgError:
-        return matrix
+def shows_rays(settings):
+    """Tell whether `scene.panoptes` asks for a picture of rays at work."""
+    return settings.debug_picture != 'none' and occlusion.picture(settings) == 'none'
 
 
 def _path_settings(scene):
@@ -42,12 +37,11 @@ def _path_settings(scene):
         'filter_glossy': paths.filter_glossy,
         'shadow_maps': paths.shadows == 'MAPS',
         'raster_primary': paths.primary == 'RASTERISED',
+        'ao_distance': occlusion.distance(scene),
         **_structure_settings(paths),
     }
     for kind in ('diffuse', 'glossy', 'transmission', 'transparent'):
         found[f'{kind}_bounces'] = getattr(paths, f'{kind}_bounces')
-    if scene.world is not None:
-        found['ao_distance'] = scene.world.light_settings.distance
     return found
 
 
@@ -55,9 +49,9 @@ def _structure_settings(paths):
     return {name: getattr(paths, name) for name in ('structure', 'tiles', 'buckets')}
 
 
-def _settings(scene, used):
+def _settings(depsgraph, used, warn):
     """Return the settings that count for a method ('realtime' or 'primitive')."""
-    settings = scene.panoptes
+    scene, settings = depsgraph.scene, depsgraph.scene.panoptes
     found = {
         'shadow_resolution': settings.realtime.shadow_resolution,
         'soft_shadows': settings.realtime.soft_shadows,
@@ -66,12 +60,14 @@ def _settings(scene, used):
     }
     if used == 'primitive':
         found.update(_path_settings(scene))
+    else:
+        found['occlusion'] = occlusion.settings(depsgraph, warn)
     # 0 switches a limit off.
     if settings.time_budget > 0.0:
         found['time_budget'] = settings.time_budget
     if settings.noise_threshold > 0.0:
         found['noise_threshold'] = settings.noise_threshold
-    if settings.debug_picture != 'none':
+    if shows_rays(settings):
         found['debug_picture'] = settings.debug_picture
         found.update(_structure_settings(settings.primitive))
     return found
@@ -85,8 +81,8 @@ def _filter_width(render, warn):
     return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
 
 
-def build(scene, size, samples, view, projection, passes, warn, camera=None):
-    """Return a request.
+def build(depsgraph, size, samples, view, projection, passes, warn, camera=None):
+    """Return a request for a dependency graph's scene.
 
     `size` is (width, height) in pixels, `samples` (first, last exclusive), `view` world to camera
     and `projection` camera to clip space, both 4x4 matrices; `passes` are names. `camera` is the
@@ -100,10 +96,11 @@ def build(scene, size, samples, view, projection, passes, warn, camera=None):
     if not (np.isfinite(view).all() and np.isfinite(projection).all()):
         raise BadRequest("The camera's place or lens is not a number; clear its transform or choose "
                          'another camera.')
+    scene = depsgraph.scene
     used = method(scene.panoptes)
     if scene.panoptes.method == 'fragment':
         warn('Fragment tracing does not work yet; Real-time is used instead.')
-    settings = _settings(scene, used)
+    settings = _settings(depsgraph, used, warn)
     if 'debug_picture' in settings:
         # It looks through the pixels' centres: another sample would be the same.
         samples = (0, 1)
@@ -126,7 +123,7 @@ def build(scene, size, samples, view, projection, passes, warn, camera=None):
 
 def _lens(camera, settings, warn):
     """Return the `lens` of a request; {} where everything is sharp."""
-    if not lens.is_used(camera):
+    if not lens.is_used(camera) or occlusion.picture(settings) != 'none':
         return {}
     if method(settings) != 'primitive' or settings.primitive.primary == 'RASTERISED':
         warn(f"Camera '{camera.name}' has depth of field, which rasterised pictures do not show; everything is "
@@ -156,22 +153,6 @@ def _cropped(projection, region, width, height):
     return crop @ projection
 
 
-def _camera(depsgraph, camera, width, height):
-    """Return (world to camera, camera to clip space) of an evaluated camera."""
-    render = depsgraph.scene.render
-    projection = np.array(camera.calc_matrix_camera(
-        depsgraph, x=max(width, 1), y=max(height, 1), scale_x=render.pixel_aspect_x,
-        scale_y=render.pixel_aspect_y))
-    # A camera's scale never changes the picture.
-    return _inverted(camera.matrix_world.normalized()), projection
-
-
-def _frame(render):
-    """Return (width, height) of a scene's whole frame in pixels."""
-    return (render.resolution_x * render.resolution_percentage // 100,
-            render.resolution_y * render.resolution_percentage // 100)
-
-
 def _active_camera(depsgraph):
     scene = depsgraph.scene
     if scene.camera is None:
@@ -181,12 +162,15 @@ def _active_camera(depsgraph):
 
 
 def preview(depsgraph):
-    """Return the request of a preview: few samples, small shadow maps, no longer than a second."""
-    width, height = _frame(depsgraph.scene.render)
-    view, projection = _camera(depsgraph, _active_camera(depsgraph), width, height)
-    request = build(depsgraph.scene, (width, height), (0, _PREVIEW_SAMPLES), view, projection,
+    """Return the request of a preview.
+
+    It has few samples, small shadow maps and no ambient occlusion, and takes no longer than a second.
+    """
+    width, height = cameras.frame(depsgraph.scene.render)
+    view, projection = cameras.matrices(depsgraph, _active_camera(depsgraph), width, height)
+    request = build(depsgraph, (width, height), (0, _PREVIEW_SAMPLES), view, projection,
                     ['Combined'], lambda sentence: None)
-    request['settings'].update(time_budget=1.0, shadow_resolution=256)
+    request['settings'].update(time_budget=1.0, shadow_resolution=256, occlusion={'strength': 0.0})
     return request
 
 
@@ -197,17 +181,17 @@ def final(depsgraph, passes, warn):
     """
     scene, camera = depsgraph.scene, _active_camera(depsgraph)
     render = scene.render
-    width, height = _frame(render)
-    if camera.type == 'CAMERA' and camera.data.type == 'PANO':
+    width, height = cameras.frame(render)
+    if cameras.is_panoramic(camera):
         warn(f"Camera '{camera.name}' is panoramic, which is not supported yet; a perspective view "
              'is used instead.')
     if render.use_multiview:
         warn('Stereoscopy is not supported yet; the view of the camera itself is rendered.')
     region = _region(render, width, height)
-    view, projection = _camera(depsgraph, camera, width, height)
+    view, projection = cameras.matrices(depsgraph, camera, width, height)
     settings = scene.panoptes
     samples = (settings.first_sample, settings.first_sample + settings.samples)
-    return build(scene, (region[2] - region[0], region[3] - region[1]), samples, view,
+    return build(depsgraph, (region[2] - region[0], region[3] - region[1]), samples, view,
                  _cropped(projection, region, width, height), passes, warn, camera)
 
 
@@ -265,11 +249,14 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
     size = (max((right - left) // pixel, 1), max((top - bottom) // pixel, 1))
     projection = _cropped(np.array(region_data.window_matrix, np.float64), rectangle, region.width,
                           region.height)
-    request = build(scene, size, (0, scene.panoptes.viewport_samples), region_data.view_matrix,
+    request = build(depsgraph, size, (0, scene.panoptes.viewport_samples), region_data.view_matrix,
                     projection, ['Combined'], warn, _looked_through(depsgraph, space, region_data))
     # The picture is shown while it refines.
     request['live'] = True
     request['settings']['filter_penumbrae'] = scene.panoptes.realtime.penumbrae != 'SAMPLED'
+    if request['method'] != 'realtime':
+        # Paths take over a picture that Real-time begins.
+        request['settings']['occlusion'] = occlusion.settings(depsgraph, warn)
     # Limits are for final renders; a view goes on until it has its samples.
     for limit in ('time_budget', 'noise_threshold'):
         request['settings'].pop(limit, None)

@@ -4,6 +4,7 @@
 import bpy
 
 from . import compat, data_panels, honoured, panels, take_over
+from .engine_panel import ENGINE
 
 _CLASSES = (take_over.PANOPTES_OT_take_over_cycles, *panels.CLASSES, *data_panels.CLASSES)
 
@@ -12,13 +13,13 @@ def register():
     """Register our panels and enter the engine into Blender's own panels and node menus."""
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
-    honoured.enter(panels.ENGINE)
-    compat.offer_shader_nodes(panels.ENGINE)
+    honoured.enter(ENGINE)
+    compat.offer_shader_nodes(ENGINE)
 
 
 def unregister():
     """Undo `register`."""
     compat.withdraw_shader_nodes()
-    honoured.leave(panels.ENGINE)
+    honoured.leave(ENGINE)
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

@@ -32,6 +32,34 @@ def set_own(**settings):
     return change
 
 
+def set_occlusion(**settings):
+    def change(scene):
+        scene.view_layers[0].use_pass_ambient_occlusion = True
+        for name, value in settings.items():
+            setattr(scene.panoptes.ambient_occlusion, name, value)
+    return change
+
+
+def occlusion_of_world(distance):
+    def change(scene):
+        scene.view_layers[0].use_pass_ambient_occlusion = True
+        scene.world.light_settings.distance = distance
+    return change
+
+
+def phantom_camera(place=(0.0, 0.0, 5.0), scale=1.0, **settings):
+    def change(scene):
+        camera = bpy.data.objects.new('Phantom', bpy.data.cameras.new('Phantom'))
+        camera.location, camera.scale = place, (scale,) * 3
+        for name, value in settings.items():
+            setattr(camera.data, name, value)
+        views = scene.panoptes.ambient_occlusion.phantom_cameras = bpy.data.collections.new('Views')
+        scene.collection.children.link(views)
+        views.objects.link(camera)
+        bpy.ops.mesh.primitive_cube_add(location=(0.0, 0.0, 1.0))
+    return change
+
+
 def set_place(**settings):
     def change(scene):
         for name, value in settings.items():
@@ -110,6 +138,26 @@ CASES = {
     'world that is no number': odd_world(math.nan),
     'bright world': odd_world(1e10),
     'no world': no_world,
+    'occlusion by dust': set_occlusion(distance=1e-30),
+    'occlusion by the universe': set_occlusion(distance=math.inf),
+    'occlusion without end': occlusion_of_world(0.0),
+    'occlusion of no distance': occlusion_of_world(math.nan),
+    'occlusion of no strength at all': set_occlusion(strength=math.nan),
+    'deep shadows that are no number': set_occlusion(deep_shadows=math.nan),
+    'more samples to begin with than there are': set_occlusion(samples=1, initial_samples=256),
+    'many samples of occlusion': set_occlusion(samples=256, importance_sampling=False, secondary_views=8),
+    'the finest phantoms': set_occlusion(phantoms='ON', phantom_resolution=4096),
+    'the coarsest phantoms': set_occlusion(phantoms='ON', phantom_resolution=16, estimator='HBAO'),
+    'phantom nowhere': phantom_camera((math.nan, 0.0, 0.0)),
+    'phantom at the end of the world': phantom_camera((3e38, 0.0, 0.0)),
+    'phantom without size': phantom_camera(scale=0.0),
+    'phantom inside out': phantom_camera(scale=-1.0),
+    'phantom without depth': phantom_camera(clip_start=10.0, clip_end=10.0),
+    'phantom with endless depth': phantom_camera(clip_start=1e-6, clip_end=3e38),
+    'phantom without a lens': phantom_camera(lens=0.0),
+    'phantom with an endless lens': phantom_camera(lens=1e30),
+    'panoramic phantom': phantom_camera(type='PANO'),
+    'phantom without a frame': phantom_camera(type='ORTHO', ortho_scale=0.0),
 }
 
 

@@ -170,7 +170,8 @@ class TestRenders:
             'render', make(), '-o', tmp_path / 'out.png', '--samples', '2:5', '--seed', '7',
             '--bounces', '3', '--frame', '4', '--force-all-effects', '--noise-threshold', '0.5',
             '--time-budget', '60', '--method', 'realtime', '--set', 'realtime.shadow_resolution=256',
-            '--set', 'realtime.soft_shadows=off', '--stats', tmp_path / 'out.json')
+            '--set', 'realtime.soft_shadows=off', '--set', 'ambient_occlusion.estimator=HBAO',
+            '--stats', tmp_path / 'out.json')
         assert status == 0, output
         assert lines == []
         assert 1 <= json.loads((tmp_path / 'out.json').read_text())['samples'] <= 3

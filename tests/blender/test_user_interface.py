@@ -162,7 +162,7 @@ class TestOurPanels:
         ours = [getattr(bpy.types, f'PANOPTES_PT_{name}')
                 for name in ('light_paths', 'light_path_kinds', 'clamping', 'rays')]
         assert not any(panel.poll(context) for panel in ours)
-        assert 'use_pass_ambient_occlusion' not in draw('PANOPTES_PT_passes')
+        assert 'use_pass_position' not in draw('PANOPTES_PT_passes')
         scene.panoptes.debug_picture = 'steps'
         assert 'structure' in draw('PANOPTES_PT_debug')
         scene.panoptes.method = 'primitive'
@@ -173,7 +173,7 @@ class TestOurPanels:
         assert draw('PANOPTES_PT_debug') == ['debug_picture']
         scene.panoptes.primitive.structure = 'cube'
         assert 'tiles' in draw('PANOPTES_PT_rays')
-        assert {'use_pass_ambient_occlusion', 'use_pass_sample_count'} <= set(draw('PANOPTES_PT_passes'))
+        assert {'use_pass_position', 'use_pass_sample_count'} <= set(draw('PANOPTES_PT_passes'))
 
     def test_warnings_are_wrapped(self, scene):
         room = {'region': types.SimpleNamespace(width=300), 'preferences': types.SimpleNamespace(

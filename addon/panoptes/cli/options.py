@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Applying command-line options to a scene's `panoptes` settings."""
 
+import bpy
+
 from .failure import Failure
 
 
@@ -39,8 +41,9 @@ def _keys(group, prefix=''):
     for prop in group.bl_rna.properties:
         if prop.identifier in ('rna_type', 'name', 'last_stats'):
             continue
-        if prop.type == 'POINTER':
-            found += _keys(getattr(group, prop.identifier), f'{prefix}{prop.identifier}.')
+        inner = getattr(group, prop.identifier)
+        if isinstance(inner, bpy.types.PropertyGroup):
+            found += _keys(inner, f'{prefix}{prop.identifier}.')
         else:
             found.append(prefix + prop.identifier)
     return found
@@ -69,6 +72,12 @@ def _value(prop, key, text):
         if text.lower() not in words:
             raise Failure(f"'{text}' is no value of {key}; give true or false.")
         return words[text.lower()]
+    if prop.type == 'POINTER':
+        # Of the data-blocks only collections can be chosen.
+        found = bpy.data.collections.get(text)
+        if found is None:
+            raise Failure(f"There is no collection '{text}' for {key}; give the name of one.")
+        return found
     if prop.type == 'STRING':
         return text
     try:
