@@ -45,6 +45,7 @@ struct LightView {
   double near_depth, far_depth;  // along the axis
   bool perspective;
   glm::dvec2 shift{0, 0};
+  bool operator==(const LightView&) const = default;
 };
 // What `light` sees in an image of so many texels.
 shared::View light_view(const LightView& light, glm::ivec2 texels);
