@@ -12,6 +12,9 @@ namespace panoptes::ambient_occlusion {
 constexpr int kMostPhantomCameras = 4;
 constexpr int kMostSecondaryViews = 8;
 
+// Samples of HBAO: directions around a point and steps in each (section 4.4.3, Figure 4.7).
+constexpr int kHbaoSlices = 6, kHbaoSteps = 4;
+
 struct Settings {
   Estimator estimator = Estimator::kAlchemy;
   float distance = 10;  // m, r_max: how far occluders are looked for; above 0, finite

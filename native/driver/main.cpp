@@ -1,6 +1,7 @@
 // Renders a scene snapshot without Blender: benchmarks, and checks on machines that have a GPU but
-// no Blender. Writes a PFM picture (linear, Combined) and the statistics.
+// no Blender. Writes a PFM picture (linear, Combined or another pass) and the statistics.
 #include "base/error.h"
+#include "driver/occlusion_options.h"
 #include "engine/engine.h"
 #include "engine/snapshot.h"
 
@@ -21,7 +22,7 @@ constexpr const char* kUsage =
     "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
     "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
     "                       [--method realtime|primitive] [--bounces N] [--shadow-maps]\n"
-    "                       [--raster-primary]\n"
+    "                       [--raster-primary] [--pass NAME] [--occlusion KEY=VALUE]...\n"
     "                       [--structure auto|orthographic|cube|lists|bvh|view] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
@@ -32,6 +33,8 @@ struct Arguments {
   std::optional<panoptes::engine::Method> method;
   int bounces = -1;
   bool shadow_maps = false, raster_primary = false;
+  panoptes::film::Pass pass = panoptes::film::Pass::kCombined;
+  std::vector<std::string> occlusion;
   panoptes::engine::StructureSettings structure;
 };
 
@@ -61,6 +64,11 @@ Arguments parse(const std::vector<std::string>& words) {
     else if (word == "--repeat") a.repeat = whole(word, value());
     else if (word == "--shadow-maps") a.shadow_maps = true;
     else if (word == "--raster-primary") a.raster_primary = true;
+    else if (word == "--pass") {
+      a.pass = panoptes::film::find_pass(value());
+      if (a.pass == panoptes::film::Pass::kCount || panoptes::film::info(a.pass).channels < 3)
+        fail("'{}' is no pass of three channels: see the README for those that there are", words[i]);
+    } else if (word == "--occlusion") a.occlusion.push_back(value());
     else if (word == "--bounces") a.bounces = whole(word, value(), 0);
     else if (word == "--method") {
       const std::string& name = value();
@@ -95,11 +103,12 @@ Arguments parse(const std::vector<std::string>& words) {
   return a;
 }
 
-void write_pfm(const std::string& path, int width, int height, const std::vector<float>& rgba) {
+void write_pfm(const std::string& path, int width, int height, const std::vector<float>& pixels) {
   std::ofstream file(path, std::ios::binary);
   file << "PF\n" << width << ' ' << height << "\n-1.0\n";
-  for (size_t i = 0; i < rgba.size(); i += 4)
-    file.write(reinterpret_cast<const char*>(&rgba[i]), 12);
+  const size_t channels = pixels.size() / (size_t(width) * size_t(height));
+  for (size_t i = 0; i < pixels.size(); i += channels)
+    file.write(reinterpret_cast<const char*>(&pixels[i]), 12);
   file.close();
   if (!file) fail("picture '{}' cannot be written: check the folder and the free space", path);
 }
@@ -121,6 +130,11 @@ void run(const Arguments& arguments) {
     request.camera.height = arguments.height;
   }
   request.passes.set(size_t(panoptes::film::Pass::kCombined));
+  request.passes.set(size_t(arguments.pass));
+  for (const std::string& option : arguments.occlusion)
+    panoptes::driver::set_occlusion(request.occlusion, option);
+  // One distance for both methods, as Blender's users have it.
+  if (!arguments.occlusion.empty()) request.paths.ao_distance = request.occlusion.distance;
   request.method = arguments.method.value_or(request.method);
   request.paths.shadow_maps |= arguments.shadow_maps;
   request.paths.raster_primary |= arguments.raster_primary;
@@ -144,7 +158,7 @@ void run(const Arguments& arguments) {
     }
     if (!arguments.output.empty())
       write_pfm(arguments.output, stats.width, stats.height,
-                job->read(panoptes::film::Pass::kCombined));
+                job->read(arguments.pass));
   }
 }
 

@@ -107,6 +107,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
   settings.seed = request.seed;
   settings.transparent_film = request.transparent_film;
   settings.filter_width = request.filter_width;
+  settings.occlusion = request.occlusion;
   const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
   gpu_scene_.check_programs(
       [&](const gpu_scene::GpuMaterial& material) {
@@ -242,6 +243,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   stats.width = request.camera.width;
   stats.height = request.camera.height;
   stats.samples = done;
+  if (!debug && !paths) realtime_.amend(plan);
   stats.effects = report(plan, times);
   for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
   stats.build_ms = build_ms;

@@ -60,6 +60,7 @@ class GBuffer {
   void dispatch_background() const;
 
   const gl::Texture& emission() const { return emission_; }
+  const gl::Texture& depth() const { return depth_; }  // reversed: 0 where no surface is
   int width() const { return width_; }
   int height() const { return height_; }
 

@@ -56,7 +56,9 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
   source.defines = {fmt::format("LAMPS {}", int(options.lamps)),
                     fmt::format("BACKGROUND {}", int(options.background)),
                     fmt::format("WORLD_LIGHT {}", int(options.world_light)),
-                    fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film))};
+                    fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film)),
+                    fmt::format("OCCLUSION {}", int(options.occlusion)),
+                    fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows))};
   options.surfaces.add_defines(source);
   film.add_defines(source);
   return source;
@@ -106,6 +108,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   background_ = runs(plan, "world_background") && gpu.world();
   world_light_ = runs(plan, "world_light");
   depth_ = runs(plan, "pass_depth");
+  deep_shadows_ = runs(plan, "deep_shadows");
   lights_ = scene.lights();
   bounds_ = scene.bounds();
 
@@ -115,6 +118,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   want(glossy_light_, lamps_ && surfaces_.glossy, width, height);
   want(environment_, background_, width, height);
   if (!shadows_) shadow_maps_.release();
+  occlusion_.begin(camera, settings.occlusion, plan, settings.seed);
   if (!emissive_light_) {
     emitters_.clear();
     emitter_revision_ = -1;
@@ -165,14 +169,16 @@ void Realtime::project_world(const scene::World& world, const gpu_scene::GpuScen
   store(world_block_, coefficients.data(), sizeof coefficients);
 }
 
-shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
+glm::dvec2 Realtime::sample_jitter(uint32_t index) const {
   // A single sample looks through the pixel's centre; many follow the pixel filter.
+  if (single_) return {0, 0};
   const glm::vec2 u = film::sample_point(index, settings_.seed, kPixelDimension);
-  const glm::dvec2 jitter =
-      single_ ? glm::dvec2(0)
-              : glm::dvec2(film::blackman_harris_offset(u.x, settings_.filter_width),
-                           film::blackman_harris_offset(u.y, settings_.filter_width));
-  shared::View view = gpu_scene::camera_view(camera_, jitter);
+  return {film::blackman_harris_offset(u.x, settings_.filter_width),
+          film::blackman_harris_offset(u.y, settings_.filter_width)};
+}
+
+shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
+  shared::View view = gpu_scene::camera_view(camera_, sample_jitter(index));
   view.size.z = int(index);
   view.size.w = int(settings_.seed);
   view.alpha = {single_ ? kCutAlpha : -1.0f, 0, 0, 0};
@@ -184,15 +190,8 @@ shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
 void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
                              const gpu_scene::GpuScene& gpu, film::Film& film,
                              const std::atomic<bool>& cancelled) {
-  if (cascades_ && index == first && first > 0) {
-    // The maps follow what the picture's first sample sees, in whatever ranges it is rendered.
-    const shared::View view = sample_view(0, sharing);
-    view_block_.set(view);
-    g_buffer_.rasterize(gpu, programs_, timer_);
-    g_buffer_.shade(gpu, programs_, timer_);
-    find_cascades(view);
-    stop_if(cancelled);
-  }
+  if (index == first && first > 0 && (cascades_ || occlusion_.undecided()))
+    look_at_first_sample(sharing, gpu, cancelled);
   const shared::View view = sample_view(index, sharing);
   if (index == first && depth_) {
     // Where a surface is half transparent or more, depth is that of what lies behind.
@@ -209,7 +208,10 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
-  if (lamps_) add_lamps(index, view, gpu, cancelled);
+  if (lamps_)
+    add_lamps(index, view, gpu, cancelled);
+  else
+    find_occlusion(index, view, nullptr, gpu, cancelled);
 
   if (background_) {
     gl::PassScope scope(timer_, "world_background");
@@ -222,9 +224,71 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
     stop_if(cancelled);
   }
 
+  if (settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs())
+    show_picture(film);
+  else
+    compose(film);
+}
+
+void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
+                                    const std::atomic<bool>& cancelled) {
+  // Views and maps follow what the picture's first sample sees, in whatever ranges it is rendered.
+  const shared::View view = sample_view(0, sharing);
+  view_block_.set(view);
+  g_buffer_.rasterize(gpu, programs_, timer_);
+  g_buffer_.shade(gpu, programs_, timer_);
+  stop_if(cancelled);
+  if (cascades_) find_cascades(view);
+  if (!occlusion_.undecided()) return;
+  rasterize::LightSet set;
+  if (shadows_) {
+    set = place(0, view, gpu);
+    draw_shadow_maps(set, set.batches.front(), view, gpu, false);
+    shadow_revision_ = -1;  // these are of another sample than the next
+    stop_if(cancelled);
+  }
+  occlusion_.choose(occlusion_sample(0, view, shadows_ ? &set : nullptr, gpu));
+}
+
+ambient_occlusion::AmbientOcclusion::Sample Realtime::occlusion_sample(
+    uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
+    const gpu_scene::GpuScene& gpu) {
+  return {.index = index,
+          .jitter = sample_jitter(index),
+          .view = view,
+          .g_buffer = g_buffer_,
+          .lights = lights,
+          .maps = &shadow_maps_,
+          .scene = gpu,
+          .bounds = bounds_,
+          .view_block = view_block_};
+}
+
+void Realtime::find_occlusion(uint32_t index, const shared::View& view,
+                              const rasterize::LightSet* lights, const gpu_scene::GpuScene& gpu,
+                              const std::atomic<bool>& cancelled) {
+  if (!occlusion_.runs()) return;
+  const auto sample = occlusion_sample(index, view, lights, gpu);
+  if (occlusion_.undecided()) occlusion_.choose(sample);
+  stop_if(cancelled);
+  occlusion_.estimate(sample);
+  stop_if(cancelled);
+}
+
+void Realtime::show_picture(film::Film& film) {
+  gl::PassScope scope(timer_, "ambient_occlusion_picture");
+  programs_.get(ambient_occlusion::picture_program(settings_.occlusion.picture, film)).use();
+  g_buffer_.bind_visibility();
+  occlusion_.bind_picture();
+  film.bind();
+  dispatch_pixels();
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void Realtime::compose(film::Film& film) {
   gl::PassScope scope(timer_, "compose");
   const ComposeOptions options{lamps_, background_, world_light_, settings_.transparent_film,
-                               surfaces_};
+                               occlusion_.runs(), deep_shadows_, surfaces_};
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();
@@ -232,6 +296,14 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   if (lamps_ && surfaces_.glossy) glossy_light_.bind(1);
   if (surfaces_.emission) g_buffer_.emission().bind(2);
   if (background_) environment_.bind(3);
+  if (occlusion_.runs()) {
+    occlusion_.combined().bind(4);
+    glUniform1f(2, settings_.occlusion.strength);
+    if (deep_shadows_) {
+      occlusion_.deep_shadows().bind(5);
+      glUniform1f(3, settings_.occlusion.deep_shadows);
+    }
+  }
   if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
   film.bind();
   dispatch_pixels();
@@ -306,12 +378,10 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
   const bool keep = lasting && shadow_revision_ == gpu.shadow_revision();
   shadow_revision_ = lasting ? gpu.shadow_revision() : -1;
   for (const rasterize::LightBatch& batch : set.batches) {
-    if (shadows_) {
-      shadow_maps_.render(set, batch, settings_.shadows, view, gpu, programs_, timer_, view_block_,
-                          keep);
-      stop_if(cancelled);
-      view_block_.set(view);
-    }
+    if (shadows_) draw_shadow_maps(set, batch, view, gpu, keep);
+    stop_if(cancelled);
+    if (&batch == &set.batches.front())
+      find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
     gl::PassScope scope(timer_, "direct_light");
     programs_.get(direct_light_program({shadows_, filtered_, surfaces_})).use();
     g_buffer_.bind_bins();
@@ -329,6 +399,13 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     stop_if(cancelled);
   }
+}
+
+void Realtime::draw_shadow_maps(const rasterize::LightSet& set, const rasterize::LightBatch& batch,
+                                const shared::View& view, const gpu_scene::GpuScene& gpu,
+                                bool keep) {
+  shadow_maps_.render(set, batch, settings_.shadows, view, gpu, programs_, timer_, view_block_, keep);
+  view_block_.set(view);
 }
 
 }  // namespace panoptes::realtime

@@ -1,8 +1,9 @@
-// Integrator 1: composes direct light and the world's light into a frame, sample by sample. The
-// radiance cache and contact occlusion join it with their own issues; until then light that has
-// left a first surface is missing, and glass and mirrors see the blurred world.
+// Integrator 1: composes direct light and the world's light, as far as it is not occluded nearby, into
+// a frame, sample by sample. Until the radiance cache joins it, light that has left a first surface is
+// missing, and glass and mirrors see the blurred world.
 #pragma once
 
+#include "ambient_occlusion/occlusion.h"
 #include "base/cancelled.h"
 #include "film/film.h"
 #include "gl/context.h"
@@ -25,6 +26,7 @@ namespace panoptes::realtime {
 
 struct Settings {
   rasterize::ShadowSettings shadows;
+  ambient_occlusion::Settings occlusion;
   uint32_t seed = 0;
   bool transparent_film = false;  // the world behind the scene is not part of Combined
   float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
@@ -38,6 +40,7 @@ struct LightOptions {
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
   bool lamps = false, background = false, world_light = false, transparent_film = false;
+  bool occlusion = false, deep_shadows = false;
   rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
@@ -48,7 +51,7 @@ gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world);
 class Realtime {
  public:
   Realtime(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
-      : device_(device), programs_(programs), timer_(timer) {}
+      : device_(device), programs_(programs), timer_(timer), occlusion_(programs, timer) {}
 
   // Prepares for a frame: allocates what the plan runs and releases what it does not. `single` says
   // that the frame has one sample only.
@@ -61,15 +64,33 @@ class Realtime {
                      const gpu_scene::GpuScene& gpu, film::Film& film,
                      const std::atomic<bool>& cancelled);
 
+  // Writes into the frame's plan what was only found while it ran.
+  void amend(plan::Effects& plan) const { occlusion_.amend(plan); }
+
  private:
   void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);
   void dispatch_pixels() const;
   void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
-  // What the camera sees in sample `index`.
+  // Where sample `index` looks through the pixels, about their centres; what the camera sees there.
+  glm::dvec2 sample_jitter(uint32_t index) const;
   shared::View sample_view(uint32_t index, uint32_t sharing) const;
   void find_cascades(const shared::View& view);
   rasterize::LightSet place(uint32_t index, const shared::View& view,
                             const gpu_scene::GpuScene& gpu);
+  // What only the picture's first sample can tell, where another one is rendered first.
+  void look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
+                            const std::atomic<bool>& cancelled);
+  void draw_shadow_maps(const rasterize::LightSet& set, const rasterize::LightBatch& batch,
+                        const shared::View& view, const gpu_scene::GpuScene& gpu, bool keep);
+  ambient_occlusion::AmbientOcclusion::Sample occlusion_sample(uint32_t index,
+                                                               const shared::View& view,
+                                                               const rasterize::LightSet* lights,
+                                                               const gpu_scene::GpuScene& gpu);
+  // While the maps of the first batch of `lights` (none: no lamps) are there.
+  void find_occlusion(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
+                      const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
+  void show_picture(film::Film& film);
+  void compose(film::Film& film);
   void add_lamps(uint32_t index, const shared::View& view,
                  const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
 
@@ -83,7 +104,7 @@ class Realtime {
   rasterize::GBufferOptions surfaces_;
   bool lamps_ = false, shadows_ = false, soft_ = false;
   bool alpha_ = false, background_ = false, world_light_ = false, depth_ = false;
-  bool emissive_light_ = false, single_ = false, filtered_ = false, cascades_ = false;
+  bool deep_shadows_ = false, emissive_light_ = false, single_ = false, filtered_ = false, cascades_ = false;
   std::vector<scene::Light> lights_;
   scene::Bounds bounds_;
 
@@ -92,6 +113,7 @@ class Realtime {
   rasterize::EmitterLights emitters_;
   int64_t emitter_revision_ = -1;
   rasterize::ShadowMaps shadow_maps_;
+  ambient_occlusion::AmbientOcclusion occlusion_;
   std::vector<scene::Bounds> sun_cascades_;
   int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
   int shadow_resolution_ = 0;

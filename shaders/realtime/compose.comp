@@ -21,6 +21,14 @@ layout(binding = 2) uniform sampler2D emission;
 #if BACKGROUND
 layout(binding = 3) uniform sampler2D environment;
 #endif
+#if OCCLUSION
+layout(binding = 4) uniform sampler2D occlusion;  // bent normal, visibility
+layout(location = 2) uniform float strength;
+#if DEEP_SHADOWS
+layout(binding = 5) uniform sampler2D deep;  // w: visibility
+layout(location = 3) uniform float deep_strength;
+#endif
+#endif
 #if WORLD_LIGHT
 // Coefficients of the world's radiance.
 layout(std140, binding = 1) uniform WorldBlock { vec4 world[9]; };
@@ -35,6 +43,14 @@ vec3 world_diffuse(vec3 n) {
   return max(sum, vec3(0.0));
 }
 
+#if OCCLUSION
+// Share of reflected light that comes past what occludes the surface (Lagarde and de Rousiers 2014).
+float specular_visibility(float visible, float roughness, float nv) {
+  return clamp(pow(nv + visible, exp2(-16.0 * roughness - 1.0)) - 1.0 + visible, 0.0, 1.0);
+}
+#else
+float specular_visibility(float visible, float roughness, float nv) { return 1.0; }
+#endif
 #endif
 
 void main() {
@@ -51,20 +67,36 @@ void main() {
   glossy = texelFetch(glossy_light, pixel, 0).rgb;
 #endif
 #endif
+  float visible = 1.0;
+#if OCCLUSION
+  vec4 occluded = texelFetch(occlusion, pixel, 0);
+#endif
 #if WORLD_LIGHT
   float nv = max(dot(g.normal, v), 0.0);
-  diffuse += g.diffuse * diffuse_albedo(g.diffuse_roughness, nv) * world_diffuse(g.normal);
+  vec3 open = g.normal;
+#if OCCLUSION
+  visible = mix(1.0, occluded.w, strength);
+#if DEEP_SHADOWS
+  visible *= mix(1.0, texelFetch(deep, pixel, 0).w, deep_strength);
+#endif
+  open = mix(open, occluded.xyz, strength);
+  float size = length(open);
+  open = size > 1.0e-3 ? open / size : g.normal;
+#endif
+  vec3 world_over = visible * world_diffuse(open);
+  diffuse += g.diffuse * diffuse_albedo(g.diffuse_roughness, nv) * world_over;
   // Reflected and refracted light of the world from its blurred radiance, until rays are traced.
 #if GLOSSY
   glossy += environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
-            world_diffuse(reflect(-v, g.normal));
+            world_diffuse(reflect(-v, g.normal)) * specular_visibility(visible, g.roughness, nv);
 #endif
 #if LAYERS
-  diffuse += g.sheen * sheen_albedo(g.sheen_roughness, nv) * world_diffuse(g.normal);
+  diffuse += g.sheen * sheen_albedo(g.sheen_roughness, nv) * world_over;
 #if GLOSSY
   glossy += environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
                                     abs(g.coat_roughness), max(dot(g.coat_normal, v), 0.0)) *
-            world_diffuse(reflect(-v, g.coat_normal));
+            world_diffuse(reflect(-v, g.coat_normal)) *
+            specular_visibility(visible, abs(g.coat_roughness), nv);
 #endif
 #endif
   vec3 transmitted = g.transmission * world_diffuse(-v);
@@ -113,6 +145,9 @@ void main() {
 #endif
 #ifdef FILM_EMIT
   film_add(FILM_EMIT, pixel, vec4(emitted, 0.0));
+#endif
+#if OCCLUSION && defined(FILM_AO)
+  film_add(FILM_AO, pixel, vec4(vec3(covered ? occluded.w : 0.0), 0.0));
 #endif
 #ifdef FILM_ENV
   film_add(FILM_ENV, pixel, vec4(background, 0.0));

@@ -1,0 +1,28 @@
+// Estimators that look at points of the hemisphere one by one. Directions follow the cosine; distances
+// are spread evenly over the volume up to r_max, since what a direction meets on its way is mostly
+// told by the points far out. The estimator's point_occlusion() says what each point counts.
+//
+// Where the paper clamps |p - s| to r_max, the range of a view's occluders is counted from the point
+// here: what is recorded within r_max of it stands in its way, what is nearer to the view by more is
+// another thing that hides it. The latter, and what hides the surface itself, leave the point unknown.
+
+void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
+  vec3 x, y;
+  frame_around(p.normal, x, y);
+  for (uint i = first; i < first + count; ++i) {
+    vec3 u = sequence_point(p, i);
+    float radius = sqrt(u.x), angle = 6.28318530718 * u.y;
+    vec3 direction = radius * (cos(angle) * x + sin(angle) * y) + sqrt(1.0 - u.x) * p.normal;
+    vec3 offset = direction * (pow(u.z, 1.0 / 3.0) * r_max());
+    Look l = look(face, p.position, offset);
+    float rise = elevation(l, p.normal);
+    vec3 before = l.surface - offset;
+    bool near = l.seen && rise > 0.0 && dot(before, before) < r_max() * r_max();
+    bool blocked = near && l.hidden;
+    sums.occlusion += near ? point_occlusion(rise, blocked) : 0.0;
+    sums.hidden += l.seen && !l.hidden ? 0.0 : 1.0;
+    sums.unknown += l.seen && (!l.hidden || blocked) ? 0.0 : 1.0;
+    sums.closed += blocked ? direction : vec3(0.0);
+  }
+  sums.count += float(count);
+}
