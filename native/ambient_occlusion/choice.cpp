@@ -35,7 +35,8 @@ struct Combined {
 // The estimates of each probe that counts.
 std::vector<std::span<const Estimate>> probes_of(std::span<const Estimate> estimates, int views) {
   std::vector<std::span<const Estimate>> probes;
-  for (; views > 0 && estimates.size() >= size_t(views); estimates = estimates.subspan(size_t(views)))
+  for (; views > 0 && estimates.size() >= size_t(views);
+       estimates = estimates.subspan(size_t(views)))
     if (std::isfinite(estimates[0].occlusion) && std::isfinite(estimates[0].weight))
       probes.push_back(estimates.first(size_t(views)));
   return probes;

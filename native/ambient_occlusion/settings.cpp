@@ -37,6 +37,15 @@ void Settings::check() const {
   check_range(secondary_views, 0, kMostSecondaryViews, "secondary views");
   check_range(phantom_resolution, 16, 4096, "texels of phantom views");
   check_range(phantom_camera_count, 0, kMostPhantomCameras, "phantom cameras");
+  for (int i = 0; i < phantom_camera_count; ++i) {
+    gpu_scene::Camera camera = phantom_cameras[size_t(i)];
+    camera.width = camera.height = 1;  // their size is not read
+    try {
+      camera.check(1);
+    } catch (const Error& error) {
+      fail("phantom camera {} cannot be used, since {}", i + 1, error.what());
+    }
+  }
 }
 
 }  // namespace panoptes::ambient_occlusion

@@ -8,8 +8,10 @@ namespace panoptes::ambient_occlusion {
 
 View camera_view(const gpu_scene::Camera& camera, const glm::dvec2& jitter) {
   const gpu_scene::LightView view = as_light_view(camera, jitter);
-  return {ViewKind::kCamera, 0,
-          {rasterize::shadow_face(view, view.origin, {camera.width, camera.height})}, false};
+  return {ViewKind::kCamera,
+          0,
+          {rasterize::shadow_face(view, view.origin, {camera.width, camera.height})},
+          false};
 }
 
 std::optional<View> lamp_view(const rasterize::LightSet& set, uint32_t light) {
@@ -17,7 +19,9 @@ std::optional<View> lamp_view(const rasterize::LightSet& set, uint32_t light) {
   if (placed.light.shadow == shared::NO_SHADOW || placed.kind == rasterize::ShadowKind::kMesh)
     return std::nullopt;
   const auto first = set.faces.begin() + placed.light.shadow;
-  View view{ViewKind::kLamp, int(light), {first, first + placed.light.faces},
+  View view{ViewKind::kLamp,
+            int(light),
+            {first, first + placed.light.faces},
             placed.light.faces == shared::CUBE_FACES};
   if (std::none_of(view.faces.begin(), view.faces.end(),
                    [](const auto& face) { return face.half_extent.z >= 0; }))

@@ -28,8 +28,9 @@ using gpu_scene::as_light_view;
 // The camera's own depth: one face in layer 0, as large as the picture.
 View camera_view(const gpu_scene::Camera& camera, const glm::dvec2& jitter);
 
-// The shadow map of the lamp number `light`; none where it casts no shadow, nothing of the scene is in
-// its map, or it is a point of a glowing surface: there are very many, and each sample has others.
+// The shadow map of the lamp number `light`; none where it casts no shadow, nothing of the scene is
+// in its map, or it is a point of a glowing surface: there are very many, and each sample has
+// others.
 std::optional<View> lamp_view(const rasterize::LightSet& set, uint32_t light);
 
 }  // namespace panoptes::ambient_occlusion

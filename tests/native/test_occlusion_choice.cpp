@@ -88,7 +88,8 @@ TEST(OcclusionChoice, DoesNotDependOnTheOrderOfProbesOrViews) {
     EXPECT_EQ(again, chosen);
     std::vector<int> places;
     for (int v : chosen)
-      places.push_back(int(std::find(view_order.begin(), view_order.end(), v) - view_order.begin()));
+      places.push_back(
+          int(std::find(view_order.begin(), view_order.end(), v) - view_order.begin()));
     EXPECT_EQ(coverage(mixed, views, places), coverage(all, views, chosen));
   }
 }

@@ -30,11 +30,10 @@ TEST(OcclusionViews, TheCamerasFaceIsTheTransformItIsDrawnWith) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (const glm::dvec3& eye : {glm::dvec3(0.5, -2, 1), glm::dvec3(1048576.125, 3, -1048576.5)}) {
     const glm::dvec3 target = eye + glm::dvec3(-3, 4, -1.5);
-    for (const Camera& camera :
-         {perspective(eye, target, 0.9, 40, 30, 0.1, 100),
-          perspective(eye, target, 0.9, 40, 30, 0.1, 100, {0.3, -0.7}),
-          perspective(eye, target, 3.1, 64, 9, 0.01, 1000, {-0.2, 0.1}),
-          orthographic(eye, target, 2.5, 30, 40, 5, 100, {0.4, 0.25})})
+    for (const Camera& camera : {perspective(eye, target, 0.9, 40, 30, 0.1, 100),
+                                 perspective(eye, target, 0.9, 40, 30, 0.1, 100, {0.3, -0.7}),
+                                 perspective(eye, target, 3.1, 64, 9, 0.01, 1000, {-0.2, 0.1}),
+                                 orthographic(eye, target, 2.5, 30, 40, 5, 100, {0.4, 0.25})})
       for (const glm::dvec2& jitter : {glm::dvec2(0), glm::dvec2(0.75, -1.5)}) {
         const shared::View drawn = gpu_scene::camera_view(camera, jitter);
         const View view = ambient_occlusion::camera_view(camera, jitter);
@@ -49,8 +48,8 @@ TEST(OcclusionViews, TheCamerasFaceIsTheTransformItIsDrawnWith) {
         const LightView from = ambient_occlusion::as_light_view(camera, jitter);
         for (int i = 0; i < 200; ++i) {
           // Anywhere in the frustum, from the near to the far plane.
-          const double depth =
-              from.near_depth * std::pow(from.far_depth / from.near_depth, 0.5 + 0.5 * uniform(random));
+          const double depth = from.near_depth * std::pow(from.far_depth / from.near_depth,
+                                                          0.5 + 0.5 * uniform(random));
           const double spread = from.perspective ? depth : 1.0;
           const glm::dvec3 p = depth * from.axis +
                                spread * ((from.shift.x + uniform(random) * from.half_x) * from.x +
@@ -59,7 +58,8 @@ TEST(OcclusionViews, TheCamerasFaceIsTheTransformItIsDrawnWith) {
           const glm::dvec3 due = glm::dvec3(clip) / clip.w, read = ndc_of(face, p);
           // The rounding of unit vectors counts by how far to the side the point lies.
           const double tolerance = 5e-7 * glm::length(p) / std::min(spread * from.half_y, depth);
-          for (int c = 0; c < 3; ++c) EXPECT_NEAR(read[c], due[c], tolerance) << c << " at " << depth;
+          for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(read[c], due[c], tolerance) << c << " at " << depth;
         }
       }
   }
@@ -81,15 +81,21 @@ TEST(OcclusionViews, LampsAreLookedThroughTheirOwnMaps) {
   room.add({5, 2, 4});
   scene::Light silent = point({0, 0, 3}, 1);
   silent.cast_shadow = false;
-  const rasterize::MeshLight glowing{
-      .position = {1, 0, 2}, .normal = {0, 0, -1}, .front = glm::vec3(1), .back = glm::vec3(0)};
+  const rasterize::MeshLight glowing{.position = {1, 0, 2},
+                                     .normal = {0, 0, -1},
+                                     .front = glm::vec3(1),
+                                     .back = glm::vec3(0)};
   scene::Bounds near_part = room;
   near_part.high.x = 0;
-  rasterize::LightSet set = rasterize::place_lights(
-      {sun({0.2f, 0.5f, -1}, 1), silent, point({0, 0, 3}, 1), spot({1, 0, 3}, {0, 0, -1}, 1, 1, 0)},
-      {}, {glowing},
-      {.bounds = room, .sun_cascades = {near_part, room}, .camera_origin = {0.5, -7, 1.25},
-       .resolution = 64, .layers = 100});
+  rasterize::LightSet set =
+      rasterize::place_lights({sun({0.2f, 0.5f, -1}, 1), silent, point({0, 0, 3}, 1),
+                               spot({1, 0, 3}, {0, 0, -1}, 1, 1, 0)},
+                              {}, {glowing},
+                              {.bounds = room,
+                               .sun_cascades = {near_part, room},
+                               .camera_origin = {0.5, -7, 1.25},
+                               .resolution = 64,
+                               .layers = 100});
   ASSERT_EQ(set.lights.size(), 5u);
   const size_t faces[4] = {2, 0, 6, 1};
   for (uint32_t i = 0; i < 4; ++i) {

@@ -61,9 +61,9 @@ class PhantomMap : public ::testing::Test {
   std::vector<float> stored(size_t view) const {
     const shared::ShadowFace face = maps.views({}).at(view).faces.at(0);
     std::vector<float> depths(size_t(face.half_extent.w * face.depth.w));
-    glGetTextureSubImage(maps.maps().id(), 0, 0, 0, int(face.half_extent.z), int(face.half_extent.w),
-                         int(face.depth.w), 1, GL_DEPTH_COMPONENT, GL_FLOAT,
-                         int(depths.size() * sizeof(float)), depths.data());
+    glGetTextureSubImage(maps.maps().id(), 0, 0, 0, int(face.half_extent.z),
+                         int(face.half_extent.w), int(face.depth.w), 1, GL_DEPTH_COMPONENT,
+                         GL_FLOAT, int(depths.size() * sizeof(float)), depths.data());
     return depths;
   }
 
@@ -74,7 +74,8 @@ class PhantomMap : public ::testing::Test {
     *along = glm::dot(p, glm::dvec3(f.axis));
     const glm::dvec2 ndc(glm::dot(p, glm::dvec3(f.x)) / *along - f.x.w,
                          glm::dot(p, glm::dvec3(f.y)) / *along - f.y.w);
-    const glm::ivec2 size(f.half_extent.w, f.depth.w), at = glm::floor((ndc * 0.5 + 0.5) * glm::dvec2(size));
+    const glm::ivec2 size(f.half_extent.w, f.depth.w),
+        at = glm::floor((ndc * 0.5 + 0.5) * glm::dvec2(size));
     if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) return 0;
     return f.depth.x / (stored(view)[size_t(at.y * size.x + at.x)] - f.depth.y);
   }
@@ -101,9 +102,9 @@ TEST_F(PhantomMap, IsTheCamerasDepthWhereAViewIsTheCamera) {
   for (const glm::dvec3& origin : {glm::dvec3(0), far}) {
     const TestScene setup = still_life(1, origin).scene;
     const glm::dvec3 eye = origin + glm::dvec3(0.5, -5, 3), target = origin + glm::dvec3(0, 0, 0.5);
-    const std::vector<Camera> cameras{
-        perspective(eye, target, 0.75, 48, 30), perspective(eye, target, 0.75, 30, 48, 0.1, 20, {0.2, -0.3}),
-        orthographic(eye, target, 3, 48, 24, 0.1, 20, {0.1, 0.05})};
+    const std::vector<Camera> cameras{perspective(eye, target, 0.75, 48, 30),
+                                      perspective(eye, target, 0.75, 30, 48, 0.1, 20, {0.2, -0.3}),
+                                      orthographic(eye, target, 3, 48, 24, 0.1, 20, {0.1, 0.05})};
     std::vector<LightView> views;
     for (const Camera& camera : cameras) views.push_back(gpu_scene::as_light_view(camera, {0, 0}));
     draw(&setup, views, 48);
@@ -114,18 +115,19 @@ TEST_F(PhantomMap, IsTheCamerasDepthWhereAViewIsTheCamera) {
       const shared::ShadowFace& face = described[v].faces.at(0);
       EXPECT_EQ(described[v].kind, ambient_occlusion::ViewKind::kPhantom);
       EXPECT_EQ(described[v].index, int(v));
-      ASSERT_EQ(glm::ivec2(face.half_extent.w, face.depth.w), glm::ivec2(camera.width, camera.height));
+      ASSERT_EQ(glm::ivec2(face.half_extent.w, face.depth.w),
+                glm::ivec2(camera.width, camera.height));
       const std::vector<float> depths = stored(v);
       int wrong = 0;
       for (int y = 0; y < camera.height; ++y)
         for (int x = 0; x < camera.width; ++x) {
           const double due = traced_depth(setup, camera, x + 0.5, y + 0.5);
           const double kept = depths[size_t(y * camera.width + x)];
-          const double depth = kept == 0 ? 0
+          const double depth = kept == 0              ? 0
                                : camera.perspective() ? face.depth.x / (kept - face.depth.y)
                                                       : (kept - face.depth.y) / face.depth.x;
-          // A part in ten thousand: vertices far away are rounded to 1/8 m in the scene itself, which
-          // the rays see too, and transformed in single precision.
+          // A part in ten thousand: vertices far away are rounded to 1/8 m in the scene itself,
+          // which the rays see too, and transformed in single precision.
           wrong += std::abs(depth - due) > 1e-4 * due;
         }
       // A texel at an outline may fall to either side of it.
@@ -163,7 +165,8 @@ TEST_F(PhantomMap, PairsSeeWhatTheCameraDoesNot) {
 
 TEST_F(PhantomMap, ViewsDrawTheirOwnRandomThresholds) {
   TestScene s;
-  s.add_object(quad({0, 4, 0}, {8, 0, 0}, {0, 0, 8}), {s.add_material(alpha_card({1, 1, 1, 0.5f}))});
+  s.add_object(quad({0, 4, 0}, {8, 0, 0}, {0, 0, 8}),
+               {s.add_material(alpha_card({1, 1, 1, 0.5f}))});
   const LightView view =
       gpu_scene::as_light_view(perspective({0, 0, 0}, {0, 1, 0}, 0.8, 64, 64), {0, 0});
   draw(&s, {view, view}, 64, true);

@@ -34,8 +34,8 @@ glm::dvec3 place_in(const LightView& view, const glm::dvec3& point) {
 
 bool shows(const LightView& view, const glm::dvec3& point) {
   const glm::dvec3 place = place_in(view, point);
-  return std::abs(place.x) <= 1 && std::abs(place.y) <= 1 && place.z >= view.near_depth * (1 - 1e-12) &&
-         place.z <= view.far_depth;
+  return std::abs(place.x) <= 1 && std::abs(place.y) <= 1 &&
+         place.z >= view.near_depth * (1 - 1e-12) && place.z <= view.far_depth;
 }
 
 // The point at a place (-1..1) of the camera's picture and a depth.
@@ -77,7 +77,7 @@ TEST(PhantomPair, StandsBehindTheCameraToEitherSideAndLevelWithIt) {
     for (const LightView& v : pair) {
       EXPECT_LT(glm::dot(v.origin - eye, seen.axis), 0);
       EXPECT_NEAR(v.origin.z, eye.z, 1e-9);
-      EXPECT_LT(glm::length(v.origin - eye), 2) << "close, compared with the focus";
+      EXPECT_LT(glm::length(v.origin - eye), 1.25 * 4) << "close, compared with the focus";
       EXPECT_EQ(v.axis, seen.axis);
     }
     // They look across each other: each has the focus near the middle of its window, and what the
@@ -113,10 +113,13 @@ TEST(PhantomPair, ShowsWhatTheCameraShowsAroundTheFocus) {
     expect_sane(pair);
     for (int i = 0; i < 1000; ++i) {
       const glm::dvec2 place(uniform(random), uniform(random));
-      // As deep as it is wide, yet no nearer than a third of the focus.
-      const double depth = std::max(3 + 0.99 * uniform(random) * std::min(wide, 6.0), 1.01);
+      // As deep as it is wide, yet no nearer than a third of the focus, or half of it where the pair's
+      // near planes are turned.
+      const double depth = std::max(3 + 0.99 * uniform(random) * std::min(wide, 6.0),
+                                    camera.perspective() ? 1.01 : 1.51);
       for (const LightView& v : pair)
-        EXPECT_TRUE(shows(v, seen_at(camera, place, depth))) << place.x << " " << place.y << " " << depth;
+        EXPECT_TRUE(shows(v, seen_at(camera, place, depth)))
+            << place.x << " " << place.y << " " << depth;
     }
   }
 }
@@ -147,16 +150,17 @@ TEST(PhantomPair, ReachesToTheLastOfTheScene) {
 TEST(PhantomPair, IsLevelHoweverTheCameraIsHeld) {
   // Rolled, tilted, upside down and looking straight up and down.
   for (const double roll : {0.0, 0.5, 1.5707, 3.1})
-    for (const glm::dvec3& target : {glm::dvec3(0, 4, 0), glm::dvec3(3, 1, -2), glm::dvec3(0.5, 0.5, 3),
-                                     glm::dvec3(0, 0, -3), glm::dvec3(0, 0, 3)})
+    for (const glm::dvec3& target :
+         {glm::dvec3(0, 4, 0), glm::dvec3(3, 1, -2), glm::dvec3(0.5, 0.5, 3), glm::dvec3(0, 0, -3),
+          glm::dvec3(0, 0, 3)})
       for (Camera camera : {perspective({0, 0, 0}, target, 0.8, 64, 36),
                             orthographic({0, 0, 0}, target, 2, 64, 36)}) {
         camera.world_to_camera =
             glm::rotate(glm::dmat4(1.0), roll, glm::dvec3(0, 0, 1)) * camera.world_to_camera;
         const std::vector<LightView> pair = phantom_pair(camera, 3, kNoBounds);
         expect_sane(pair);
-        const glm::dvec3 apart = camera.perspective() ? pair[1].origin - pair[0].origin
-                                                      : pair[0].axis - pair[1].axis;
+        const glm::dvec3 apart =
+            camera.perspective() ? pair[1].origin - pair[0].origin : pair[0].axis - pair[1].axis;
         EXPECT_GT(glm::length(apart), 0.3);
         EXPECT_NEAR(apart.z, 0, 1e-9) << roll << " " << target.z;
       }
@@ -180,16 +184,20 @@ TEST(PhantomPair, ScalesWithTheSceneAndStandsWhereItStands) {
   for (const double scale : {1e-3, 1.0, 1e3})
     for (const glm::dvec3& at : {glm::dvec3(0), glm::dvec3(1048576, -1048576, 1048576)}) {
       const auto pair_of = [&](double s, const glm::dvec3& o, bool perspectively) {
-        const glm::dvec3 eye = o + s * glm::dvec3(0.5, -1, 1), target = o + s * glm::dvec3(0, 3, 0.5);
-        const Camera camera = perspectively ? perspective(eye, target, 0.8, 64, 36, 0.01 * s, 50 * s)
-                                            : orthographic(eye, target, 2 * s, 64, 36, 0.01 * s, 50 * s);
+        const glm::dvec3 eye = o + s * glm::dvec3(0.5, -1, 1),
+                         target = o + s * glm::dvec3(0, 3, 0.5);
+        const Camera camera = perspectively
+                                  ? perspective(eye, target, 0.8, 64, 36, 0.01 * s, 50 * s)
+                                  : orthographic(eye, target, 2 * s, 64, 36, 0.01 * s, 50 * s);
         return phantom_pair(camera, 3 * s, kNoBounds);
       };
       for (const bool perspectively : {true, false}) {
-        const auto base = pair_of(1, glm::dvec3(0), perspectively), moved = pair_of(scale, at, perspectively);
+        const auto base = pair_of(1, glm::dvec3(0), perspectively),
+                   moved = pair_of(scale, at, perspectively);
         for (int i = 0; i < 2; ++i) {
           const double unit = perspectively ? 1 : scale;
-          EXPECT_LT(glm::length((moved[i].origin - at) / scale - base[i].origin), 1e-9 / scale + 1e-9);
+          EXPECT_LT(glm::length((moved[i].origin - at) / scale - base[i].origin),
+                    1e-9 / scale + 1e-9);
           EXPECT_NEAR(moved[i].half_x / unit, base[i].half_x, 1e-6 / std::min(scale, 1.0));
           EXPECT_NEAR(moved[i].near_depth / scale, base[i].near_depth, 1e-6 / std::min(scale, 1.0));
         }
@@ -206,14 +214,17 @@ TEST(PhantomPair, IsSaneWhateverTheLensAndTheFocus) {
          {kNoBounds, bounds_of(glm::vec3(o) - 5.0f, glm::vec3(o) + 5.0f), bounds_of(o, o),
           bounds_of(glm::vec3(o) - 5.0f, glm::vec3(float(infinity))),
           bounds_of(glm::vec3(o) + glm::vec3(1, 2, 0), glm::vec3(o) + glm::vec3(3, 9, 0))})
-      for (const double focus : {0.0, -1.0, 1e-300, 1e-9, 1.0, 1e9, 1e300, infinity, -infinity, nan}) {
+      for (const double focus :
+           {0.0, -1.0, 1e-300, 1e-9, 1.0, 1e9, 1e300, infinity, -infinity, nan}) {
         for (const double degrees : {1.0, 50.0, 120.0, 179.0})
-          expect_sane(phantom_pair(
-              perspective(o + glm::dvec3(0.25, -1, 0.5), o + glm::dvec3(0, 3, 0.25), degrees * kPi / 180, 64, 36),
-              focus, bounds));
+          expect_sane(
+              phantom_pair(perspective(o + glm::dvec3(0.25, -1, 0.5), o + glm::dvec3(0, 3, 0.25),
+                                       degrees * kPi / 180, 64, 36),
+                           focus, bounds));
         for (const double half : {1e-4, 1.0, 1e4})
-          expect_sane(phantom_pair(
-              orthographic(o + glm::dvec3(0.25, -1, 0.5), o + glm::dvec3(0, 3, 0.25), half, 64, 36), focus, bounds));
+          expect_sane(phantom_pair(orthographic(o + glm::dvec3(0.25, -1, 0.5),
+                                                o + glm::dvec3(0, 3, 0.25), half, 64, 36),
+                                   focus, bounds));
       }
 }
 
@@ -233,6 +244,19 @@ TEST(PhantomCameras, HaveTheArtistsFrusta) {
   EXPECT_FALSE(views[1].perspective);
   EXPECT_NEAR(views[1].half_x, 4, 1e-12);
   EXPECT_NEAR(views[1].shift.x, 0.5 * 4, 1e-12);
+}
+
+TEST(PhantomCameras, MustBeAbleToSeeSomething) {
+  ambient_occlusion::Settings settings;
+  settings.phantom_camera_count = 2;
+  settings.phantom_cameras[0] = perspective({1, 2, 3}, {0, 0, 0}, 0.9, 16, 9);
+  settings.phantom_cameras[1] = settings.phantom_cameras[0];
+  settings.phantom_cameras[1].width = settings.phantom_cameras[1].height = 0;  // not read
+  EXPECT_NO_THROW(settings.check());
+  settings.phantom_cameras[1].projection[0][0] = 0;
+  expect_error([&] { settings.check(); }, "phantom camera 2");
+  settings.phantom_camera_count = 1;
+  EXPECT_NO_THROW(settings.check());
 }
 
 }  // namespace
