@@ -3,7 +3,7 @@
 
     blender -b --factory-startup -P blend_scenes/make_occlusion.py
 
-confined   a storeroom: pillars, racks, crates and pipes, all upright and close to each other. Its tubes glow, and
+confined   a storeroom: stalls, cartons and pipes, all upright and close to each other. Its tubes glow, and
            its one lamp shines into a side room, so that no shadow map holds what the camera sees.
 colonnade  a paved yard with columns, piers and crates under a sun whose shadow map holds most of it. In 60 frames
            the camera walks along the columns, which hide and show what stands behind them.
@@ -108,20 +108,13 @@ def start():
     return scene
 
 
-def rack(name, material, x, y, length, depth=0.5, height=2.1):
-    """Shelves along y between upright panels; thin boards, deep shade between them."""
-    parts = [((x, y + at, 0.0), (x + depth, y + at + 0.04, height)) for at in (0.0, length / 2, length)]
-    parts += [((x, y, z), (x + depth, y + length, z + 0.03)) for z in (0.12, 0.62, 1.12, 1.62)]
-    return boxes(name, material, parts)
-
-
 def make_confined():
-    """The storeroom: 5 x 12 x 2.8 m, the camera in its middle aisle."""
+    """The storeroom: 5 x 14 x 2.8 m, the camera in its aisle."""
     scene = start()
     chalk, grey = plain("chalk", (0.75, 0.72, 0.67), 0.9), plain("concrete", (0.5, 0.5, 0.5), 0.9)
     wood, card = plain("wood", (0.45, 0.28, 0.14), 0.7), plain("cardboard", (0.58, 0.42, 0.25), 0.9)
     iron = plain("iron", (0.2, 0.22, 0.25), 0.5)
-    left, right, near, far, height = -2.5, 2.5, -3.0, 9.0, 2.8
+    left, right, near, far, height = -2.5, 2.5, -4.0, 10.0, 2.8
     boxes("room", chalk, [
         ((left - 0.2, near - 0.2, 0.0), (left, far + 0.2, height)),
         ((right, near - 0.2, 0.0), (right + 0.2, 4.6, height)),
@@ -135,21 +128,20 @@ def make_confined():
     ])
     boxes("floor and ceiling", grey, [((left - 0.2, near - 0.2, -0.2), (5.4, far + 0.2, 0.0)),
                                       ((left - 0.2, near - 0.2, height), (5.4, far + 0.2, height + 0.2))])
-    pillars = shapes.Shape()
-    for x, y in ((-0.95, 2.2), (1.0, 2.5), (-1.1, 4.2), (0.9, 4.6), (-0.85, 6.4), (1.05, 6.9)):
-        pillars.box((x - 0.14, y - 0.14, 0.0), (x + 0.14, y + 0.14, height))
-    pillars.object("pillars", chalk)
-    rack("rack left", wood, left + 0.02, 1.4, 2.4)
-    rack("rack left far", wood, left + 0.02, 4.6, 2.4)
-    rack("rack right", wood, right - 0.52, 0.9, 2.6)
-    # A partition across part of the aisle and one along it: corners that are seen from one side only.
-    boxes("partitions", chalk, [((-0.62, 5.15, 0.0), (-0.54, 6.05, 2.2)), ((0.2, 7.6, 0.0), (1.5, 7.7, 2.3)),
-                                ((1.45, 3.3, 0.0), (1.53, 4.2, 1.9))])
-    crates("crates", card, [(-1.45, 2.75, 4), (0.5, 3.5, 2), (1.6, 2.6, 5), (-1.55, 3.7, 3), (-0.35, 4.9, 2), (1.5, 5.0, 4),
-                            (0.35, 6.0, 2), (-1.6, 5.9, 4), (-0.2, 7.3, 3), (1.7, 6.3, 3), (-1.7, 7.6, 5), (0.75, 8.4, 2)], 7)
-    first = pipe(0.06, height).object("pipe", iron, (-0.55, 2.75, 0.0))
-    for index, (x, y) in enumerate(((0.62, 2.9), (0.45, 4.3), (-0.7, 4.75), (0.55, 5.4), (0.1, 6.7), (0.25, 6.7), (-0.5, 8.2))):
-        shapes.instance(f"pipe {index}", first.data, (x, y, 0.0))
+    # Stalls along both walls; the doorway interrupts those on the right.
+    stalls = [(side, 1.2 + 0.6 * i) for i in range(13) for side in (-1, 1) if side < 0 or not 4.4 < 1.2 + 0.6 * i < 6.3]
+    boxes("stalls", wood, [((left, y, 0.0), (left + 0.9, y + 0.05, 2.2)) if side < 0 else ((right - 0.9, y, 0.0), (right, y + 0.05, 2.2))
+                           for side, y in stalls])
+    # Cartons on end, close to each other, as high as a man.
+    dice, cartons = random.Random(5), shapes.Shape()
+    for _ in range(40):
+        x, y = dice.uniform(-1.4, 1.2), dice.uniform(1.8, 8.0)
+        size = (dice.uniform(0.15, 0.35), dice.uniform(0.15, 0.35), dice.uniform(1.2, 2.2))
+        cartons.box((x, y, 0.0), (x + size[0], y + size[1], size[2]))
+    cartons.object("cartons", card)
+    first = pipe(0.06, height).object("pipe", iron, (-0.35, 8.6, 0.0))
+    for index, x in enumerate((-0.15, 0.05, 0.25)):
+        shapes.instance(f"pipe {index}", first.data, (x, 8.6, 0.0))
     glow = plain("tube", (0.0, 0.0, 0.0))
     node = glow.node_tree.nodes["Principled BSDF"]
     (node.inputs.get("Emission") or node.inputs["Emission Color"]).default_value = (1.0, 0.95, 0.85, 1.0)
@@ -157,7 +149,7 @@ def make_confined():
     boxes("tubes", glow, [((-0.04, y, height - 0.06), (0.04, y + 1.2, height - 0.02)) for y in (-0.4, 2.6, 5.6)])
     lamp("side lamp", "SPOT", 120.0, (4.9, 6.2, 2.5), (3.4, 4.6, 0.0), spot_size=math.radians(55.0), shadow_soft_size=0.03)
     world((0.8, 0.9, 1.0), 0.25)
-    camera((0.05, -0.2, 1.55), (0.0, 5.0, 1.15), 20.0)
+    camera((0.02, -0.8, 1.6), (0.0, 5.0, 1.1), 24.0)
     return scene
 
 
