@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes confined.blend and colonnade.blend beside this script: places where one view misses many occluders.
+
+    blender -b --factory-startup -P blend_scenes/make_occlusion.py
+
+confined   a storeroom: stalls, cartons and pipes, all upright and close to each other. Its tubes glow, and
+           its one lamp shines into a side room, so that no shadow map holds what the camera sees.
+colonnade  a paved yard with columns, piers and crates under a sun whose shadow map holds most of it. In 60 frames
+           the camera walks along the columns, which hide and show what stands behind them.
+
+Few triangles, no textures: they are measured many times. The same script makes the same scenes.
+"""
+
+import math
+import random
+import sys
+from pathlib import Path
+
+import bpy
+from mathutils import Vector
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import shapes  # noqa: E402
+from exhibits.gallery import plain, thing  # noqa: E402
+
+FRAMES = 60
+
+
+def boxes(name, material, corners):
+    """One object of boxes, each between two corners."""
+    shape = shapes.Shape()
+    for low, high in corners:
+        shape.box(low, high)
+    return shape.object(name, material)
+
+
+def turned_box(shape, middle, size, turn):
+    """Adds a box that stands on z = middle's, turned about its own upright axis."""
+    box = shapes.Shape()
+    box.box((-size[0] / 2, -size[1] / 2, 0.0), (size[0] / 2, size[1] / 2, size[2]))
+    cos, sin = math.cos(turn), math.sin(turn)
+    place = [(middle[0] + cos * x - sin * y, middle[1] + sin * x + cos * y, middle[2] + z) for x, y, z in box.vertices]
+    for face in range(6):
+        shape.face(place[4 * face:4 * face + 4], box.uvs[4 * face:4 * face + 4])
+
+
+def crates(name, material, stacks, seed):
+    """Stacks of crates at (x, y, how many), each turned a little from the one below."""
+    shape, dice = shapes.Shape(), random.Random(seed)
+    for x, y, count in stacks:
+        z = 0.0
+        for _ in range(count):
+            size = [dice.uniform(0.38, 0.55), dice.uniform(0.38, 0.5), dice.uniform(0.3, 0.48)]
+            turned_box(shape, (x + dice.uniform(-0.05, 0.05), y + dice.uniform(-0.05, 0.05), z), size, dice.uniform(-0.4, 0.4))
+            z += size[2]
+    return shape.object(name, material)
+
+
+def pipe(radius, height, segments=12):
+    """An open upright tube."""
+    return shapes.lathe([(radius, 0.0), (radius, height)], segments)
+
+
+def aim(made, target):
+    """Turns a lamp's or camera's -z to a point."""
+    made.rotation_euler = (Vector(target) - made.location).to_track_quat("-Z", "Y").to_euler()
+    return made
+
+
+def lamp(name, kind, energy, location, target, **settings):
+    light = bpy.data.lights.new(name, kind)
+    light.energy = energy
+    for key, value in settings.items():
+        setattr(light, key, value)
+    return aim(thing(name, light, location), target)
+
+
+def camera(location, target, lens):
+    data = bpy.data.cameras.new("camera")
+    data.lens = lens
+    made = aim(thing("camera", data, location), target)
+    bpy.context.scene.camera = made
+    return made
+
+
+def world(color, strength):
+    made = bpy.data.worlds.new("world")
+    made.use_nodes = True
+    background = made.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*color, 1.0)
+    background.inputs["Strength"].default_value = strength
+    bpy.context.scene.world = made
+
+
+def start():
+    """An empty file of 480x270 pixels."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 480, 270, 100
+    scene.view_settings.view_transform = "Filmic"
+    if hasattr(scene, "cycles"):
+        scene.render.engine = "CYCLES"
+        scene.cycles.samples, scene.cycles.seed = 64, 1
+        # Debian's Blender has no denoiser and refuses to render where one is asked for.
+        scene.cycles.use_denoising = False
+    return scene
+
+
+def make_confined():
+    """The storeroom: 5 x 14 x 2.8 m, the camera in its aisle."""
+    scene = start()
+    chalk, grey = plain("chalk", (0.75, 0.72, 0.67), 0.9), plain("concrete", (0.5, 0.5, 0.5), 0.9)
+    wood, card = plain("wood", (0.45, 0.28, 0.14), 0.7), plain("cardboard", (0.58, 0.42, 0.25), 0.9)
+    iron = plain("iron", (0.2, 0.22, 0.25), 0.5)
+    left, right, near, far, height = -2.5, 2.5, -4.0, 10.0, 2.8
+    boxes("room", chalk, [
+        ((left - 0.2, near - 0.2, 0.0), (left, far + 0.2, height)),
+        ((right, near - 0.2, 0.0), (right + 0.2, 4.6, height)),
+        ((right, 5.7, 0.0), (right + 0.2, far + 0.2, height)),
+        ((left, near - 0.2, 0.0), (right, near, height)),
+        ((left, far, 0.0), (right, far + 0.2, height)),
+        # The side room behind the doorway.
+        ((right + 0.1, 4.2, 0.0), (5.2, 4.4, height)),
+        ((right + 0.1, 6.4, 0.0), (5.2, 6.6, height)),
+        ((5.2, 4.2, 0.0), (5.4, 6.6, height)),
+    ])
+    boxes("floor and ceiling", grey, [((left - 0.2, near - 0.2, -0.2), (5.4, far + 0.2, 0.0)),
+                                      ((left - 0.2, near - 0.2, height), (5.4, far + 0.2, height + 0.2))])
+    # Stalls along both walls; the doorway interrupts those on the right.
+    stalls = [(side, 1.2 + 0.6 * i) for i in range(13) for side in (-1, 1) if side < 0 or not 4.4 < 1.2 + 0.6 * i < 6.3]
+    boxes("stalls", wood, [((left, y, 0.0), (left + 0.9, y + 0.05, 2.2)) if side < 0 else ((right - 0.9, y, 0.0), (right, y + 0.05, 2.2))
+                           for side, y in stalls])
+    # Cartons on end, close to each other, as high as a man.
+    dice, cartons = random.Random(5), shapes.Shape()
+    for _ in range(40):
+        x, y = dice.uniform(-1.4, 1.2), dice.uniform(1.8, 8.0)
+        size = (dice.uniform(0.15, 0.35), dice.uniform(0.15, 0.35), dice.uniform(1.2, 2.2))
+        cartons.box((x, y, 0.0), (x + size[0], y + size[1], size[2]))
+    cartons.object("cartons", card)
+    first = pipe(0.06, height).object("pipe", iron, (-0.35, 8.6, 0.0))
+    for index, x in enumerate((-0.15, 0.05, 0.25)):
+        shapes.instance(f"pipe {index}", first.data, (x, 8.6, 0.0))
+    glow = plain("tube", (0.0, 0.0, 0.0))
+    node = glow.node_tree.nodes["Principled BSDF"]
+    (node.inputs.get("Emission") or node.inputs["Emission Color"]).default_value = (1.0, 0.95, 0.85, 1.0)
+    node.inputs["Emission Strength"].default_value = 9.0
+    boxes("tubes", glow, [((-0.04, y, height - 0.06), (0.04, y + 1.2, height - 0.02)) for y in (-0.4, 2.6, 5.6)])
+    lamp("side lamp", "SPOT", 120.0, (4.9, 6.2, 2.5), (3.4, 4.6, 0.0), spot_size=math.radians(55.0), shadow_soft_size=0.03)
+    world((0.8, 0.9, 1.0), 0.25)
+    camera((0.02, -0.8, 1.6), (0.0, 5.0, 1.1), 24.0)
+    return scene
+
+
+def make_colonnade():
+    """The yard: the camera walks 3 m to the right along the columns, looking through them."""
+    scene = start()
+    stone, paving = plain("stone", (0.7, 0.64, 0.54), 0.9), plain("paving", (0.45, 0.43, 0.4), 0.9)
+    wood = plain("wood", (0.4, 0.25, 0.13), 0.7)
+    boxes("ground", paving, [((-8.0, -4.0, -0.2), (8.0, 9.0, 0.0))])
+    boxes("walls", stone, [((-6.5, 6.5, 0.0), (6.5, 6.8, 2.2)), ((-6.8, 1.0, 0.0), (-6.5, 6.8, 2.2)),
+                           ((-3.2, 4.6, 0.0), (-2.9, 6.5, 1.6)), ((0.6, 4.9, 0.0), (0.9, 6.5, 1.6)), ((3.4, 4.4, 0.0), (3.7, 6.5, 1.6))])
+    boxes("steps", stone, [((-6.5, 6.0 - 0.3 * i, 0.0), (6.5, 6.5, 0.14 * (3 - i) - 0.04)) for i in range(3)])
+    column = shapes.lathe([(0.24, 0.0), (0.24, 0.12), (0.24, 0.12), (0.17, 0.14), (0.15, 2.3), (0.15, 2.3), (0.22, 2.4), (0.22, 2.5)], 20)
+    first = column.object("column", stone, (-4.0, 1.3, 0.0))
+    for index in range(1, 8):
+        shapes.instance(f"column {index}", first.data, (-4.0 + 1.15 * index, 1.3 + 0.25 * (index % 2), 0.0))
+    piers = shapes.Shape()
+    for index, x in enumerate((-4.6, -3.3, -1.8, -0.4, 1.5, 2.7, 4.4)):
+        turned_box(piers, (x, 3.1 + 0.35 * (index % 3), 0.0), (0.3, 0.3, 1.1 + 0.2 * (index % 2)), 0.3 * index)
+    piers.object("piers", stone)
+    crates("crates", wood, [(-3.9, 3.6, 2), (-2.4, 4.1, 2), (-1.2, 4.5, 3), (0.2, 3.9, 2), (1.9, 4.2, 2), (2.9, 4.7, 1), (-0.7, 2.3, 1),
+                            (2.1, 2.4, 1), (-2.7, 2.3, 1), (3.6, 3.3, 2)], 3)
+    lamp("sun", "SUN", 2.5, (5.0, -2.0, 8.0), (0.0, 2.5, 0.0), angle=math.radians(0.53))
+    world((0.45, 0.65, 1.0), 0.5)
+    made = camera((-1.5, -1.2, 1.5), (-1.2, 4.0, 0.5), 26.0)
+    scene.frame_start, scene.frame_end = 1, FRAMES
+    for frame, x in ((1, -1.5), (FRAMES, 1.5)):
+        made.location.x = x
+        made.keyframe_insert("location", index=0, frame=frame)
+    for key in made.animation_data.action.fcurves[0].keyframe_points:
+        key.interpolation = "LINEAR"
+    scene.frame_set(1)
+    return scene
+
+
+for name, make in (("confined", make_confined), ("colonnade", make_colonnade)):
+    make()
+    bpy.ops.wm.save_as_mainfile(filepath=str(HERE / f"{name}.blend"), compress=True)
