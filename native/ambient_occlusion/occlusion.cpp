@@ -121,6 +121,8 @@ std::vector<Estimate> AmbientOcclusion::probe(const Sample& sample, const std::v
   buffer.clear();
   for (size_t k = 0; k < views.size(); ++k) {
     bind_view(views[k], sample, int(k), int(views.size()), stride, options_for(views[k], true));
+    sample.g_buffer.depth().bind(1);
+    glBindSampler(1, 0);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, buffer.id());
     glDispatchCompute(GLuint(probes + 63) / 64, 1, 1);
   }

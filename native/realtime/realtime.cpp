@@ -243,7 +243,7 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
   rasterize::LightSet set;
   if (shadows_) {
     set = place(0, view, gpu);
-    draw_shadow_maps(set, set.batches.front(), view, gpu, false);
+    if (!set.batches.empty()) draw_shadow_maps(set, set.batches.front(), view, gpu, false);
     shadow_revision_ = -1;  // these are of another sample than the next
     stop_if(cancelled);
   }
@@ -377,6 +377,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
       !soft_ && !alpha_ && set.batches.size() <= 1 && (emitters_.empty() || single_);
   const bool keep = lasting && shadow_revision_ == gpu.shadow_revision();
   shadow_revision_ = lasting ? gpu.shadow_revision() : -1;
+  if (set.batches.empty()) find_occlusion(index, view, nullptr, gpu, cancelled);
   for (const rasterize::LightBatch& batch : set.batches) {
     if (shadows_) draw_shadow_maps(set, batch, view, gpu, keep);
     stop_if(cancelled);

@@ -19,6 +19,7 @@
 layout(local_size_x = 64) in;
 #if PROBES
 layout(std430, binding = 3) writeonly buffer Probes { OcclusionProbe probes[]; };
+layout(binding = 1) uniform sampler2D camera_depths;
 #else
 // x: occlusion, y: weight, z: samples relative to the most there may be; w: how much of the hemisphere
 // is hidden from the view, 0..1
@@ -41,15 +42,20 @@ float view_weight(Sums sums, float facing) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
 #if PROBES
-  i *= occlusion.place.z;
-#endif
+  // One pixel of each so many, whatever it shows: the list's order is another one each time.
+  uint index = i * occlusion.place.z + hash(i) % occlusion.place.z;
+  ivec2 pixel = pixel_of(index);
+  if (pixel.y >= view.size.y || texelFetch(camera_depths, pixel, 0).r <= 0.0) return;
+#else
   if (i >= bins[material_count + 1u].count) return;
-  ivec2 pixel = pixel_of(pixels[i]);
+  uint index = pixels[i];
+  ivec2 pixel = pixel_of(index);
+#endif
   GBufferPixel g = read_g_buffer(pixel);
   Place p;
   p.position = g.position;
   p.normal = g.normal;
-  uint key = hash(pixels[i] + occlusion.samples.w);
+  uint key = hash(index + occlusion.samples.w);
   p.first = uvec3(key, hash(key + 1u), hash(key + 2u)) +
             occlusion.samples.z * uvec3(3518319153u, 2882110345u, 2360945575u);
   Face face = main_face(p.position);
@@ -61,16 +67,17 @@ void main() {
   estimate(p, face, 0u, initial, sums);
   float more = float(occlusion.samples.x - initial) * view_weight(sums, facing) *
                0.5 * (1.0 + clamp(sums.occlusion / sums.count, 0.0, 1.0));  // (4.5)
-  // Rounded by chance, so that its expectation is right, and for a group of pixels alike, since the
-  // slowest pixel of a group holds the others up.
-  float chance = unit_float(hash(gl_WorkGroupID.x + hash(occlusion.samples.z + occlusion.samples.w)));
+  // Rounded by chance, so that its expectation is right, and for neighbours alike, since they run
+  // together and the slowest holds the others up.
+  uint block = uint(pixel.x >> 3) + (uint(pixel.y >> 3) << 16);
+  float chance = unit_float(hash(block + hash(occlusion.samples.z + occlusion.samples.w)));
   estimate(p, face, initial, uint(more + chance), sums);
 #else
   estimate(p, face, 0u, occlusion.samples.x, sums);
 #endif
   float blocked = clamp(sums.occlusion / sums.count, 0.0, 1.0), weight = view_weight(sums, facing);
 #if PROBES
-  uint probe = gl_GlobalInvocationID.x * occlusion.place.w + occlusion.place.x;
+  uint probe = i * occlusion.place.w + occlusion.place.x;
   probes[probe] = OcclusionProbe(blocked, weight, dot(g.position, view.axis.xyz), 1u);
 #else
   ivec3 at = ivec3(pixel, occlusion.place.x);

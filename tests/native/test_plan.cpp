@@ -85,7 +85,42 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
          s.soft_shadows = false;
        },
        {"direct_light", "sun_shadows", "sun_cascades"}},
-      {"a world", [](auto& f, auto&) { f.world = true; }, {"world_light", "world_background"}},
+      {"a world",
+       [](auto& f, auto&) { f.world = true; },
+       {"world_light", "world_background", "ambient_occlusion", "occlusion_phantom_views",
+        "bent_normals", "occlusion_filter"}},
+      {"a world in a picture of many samples, with a lamp",
+       [](auto& f, auto& s) {
+         f.world = true;
+         f.lamps[0] = f.shadow_lamps[0] = 1;
+         s.samples = 16;
+       },
+       {"world_light", "world_background", "direct_light", "point_shadows", "ambient_occlusion",
+        "occlusion_lamp_views", "occlusion_phantom_views", "bent_normals"}},
+      {"occlusion without strength",
+       [](auto& f, auto& s) {
+         f.world = true;
+         s.occlusion.strength = 0;
+       },
+       {"world_light", "world_background"}},
+      {"the AO pass of a black world, by the camera alone",
+       [](auto&, auto& s) {
+         s.passes = pass_set({film::Pass::kAo});
+         s.occlusion.phantoms = ambient_occlusion::Phantoms::kOff;
+         s.occlusion.filter = ambient_occlusion::Filter::kOff;
+       },
+       {"pass_ao", "ambient_occlusion"}},
+      {"deep shadows",
+       [](auto& f, auto& s) {
+         f.world = true;
+         f.lamps[1] = f.shadow_lamps[1] = 1;
+         s.occlusion.deep_shadows = 1;
+         s.occlusion.phantoms = ambient_occlusion::Phantoms::kOff;
+         s.occlusion.secondary_views = 0;
+         s.samples = 16;
+       },
+       {"world_light", "world_background", "direct_light", "sun_shadows", "sun_cascades",
+        "ambient_occlusion", "bent_normals", "deep_shadows"}},
       {"passes with a divisor",
        [](auto&, auto& s) {
          s.passes = pass_set({film::Pass::kDiffDir, film::Pass::kDepth});
@@ -130,7 +165,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 15u + 4u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 15u + 4u + 6u + size_t(film::kPassCount));
   }
 }
 

@@ -162,6 +162,36 @@ class Shaders : public ::testing::Test {
     return options;
   }
 
+  static void add_occlusion(film::Film& film) {
+    using ambient_occlusion::ViewKind;
+    // A camera and a phantom view have one face; a lamp's map has one, six or cascades.
+    const std::vector<ambient_occlusion::SampleOptions> views{
+        {.view = ViewKind::kCamera},
+        {.view = ViewKind::kPhantom},
+        {.view = ViewKind::kLamp},
+        {.view = ViewKind::kLamp, .cube = true},
+        {.view = ViewKind::kLamp, .cascades = true}};
+    for (ambient_occlusion::SampleOptions options : views)
+      for (int estimator = 0; estimator < 4; ++estimator)
+        for (int bits = 0; bits < 8; ++bits) {
+          options.obscurance = estimator == 3;
+          options.estimator = ambient_occlusion::Estimator(estimator % 3);
+          options.importance_sampling = bits & 1;
+          options.bent_normals = bits & 2;
+          options.probes = bits & 4;
+          const bool fixed = options.obscurance ||
+                             options.estimator == ambient_occlusion::Estimator::kHbao;
+          if (options.importance_sampling && (fixed || options.probes)) continue;
+          if (options.bent_normals && (options.obscurance || options.probes)) continue;
+          add(ambient_occlusion::sample_program(options));
+        }
+    for (bool bent : {false, true}) add(ambient_occlusion::combine_program(bent));
+    add(ambient_occlusion::filter_program());
+    film.start(4, 4, {});
+    for (int picture = 1; picture < int(ambient_occlusion::kPictureNames.size()); ++picture)
+      add(ambient_occlusion::picture_program(ambient_occlusion::Picture(picture), film));
+  }
+
   static void enumerate() {
     const char* plain = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
                         "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
@@ -199,16 +229,24 @@ class Shaders : public ::testing::Test {
 
     // Passes only add stores; each alone, none and all stand for the rest.
     film::Film film;
-    const auto with_film = [&](const film::PassSet& passes, bool moments, int bits) {
+    const auto with_film = [&](const film::PassSet& passes, bool moments, int bits,
+                               bool occlusion = false, bool deep_shadows = false) {
       film.start(4, 4, passes, {.moments = moments});
       add(realtime::compose_program({bool(bits & 16), bool(bits & 32), bool(bits & 64),
-                                     bool(bits & 128), surfaces(bits)},
+                                     bool(bits & 128), occlusion, deep_shadows, surfaces(bits)},
                                     film));
     };
     for (int bits = 0; bits < 256; ++bits) {
       with_film(film::PassSet().set(), true, bits);
       with_film({}, false, bits);
     }
+    // Occlusion only meets the world's light, of all kinds of surfaces or of none.
+    for (int bits : {0, 64, 79, 255})
+      for (bool deep_shadows : {false, true}) {
+        with_film(film::PassSet().set(), true, bits, true, deep_shadows);
+        with_film({}, false, bits, true, deep_shadows);
+      }
+    add_occlusion(film);
     for (int pass = 0; pass < film::kPassCount; ++pass)
       for (int bits : {0, 255}) with_film(film::PassSet().set(size_t(pass)), false, bits);
 
