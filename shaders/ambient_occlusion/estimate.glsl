@@ -40,3 +40,6 @@ float elevation(Look l, vec3 normal) {
 }
 
 float r_max() { return occlusion.range.x; }
+
+// Whether `v` is shorter than so many times r_max.
+bool within(vec3 v, float times) { return dot(v, v) < times * times * r_max() * r_max(); }

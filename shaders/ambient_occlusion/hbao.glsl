@@ -30,7 +30,7 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
         float reach = (float(k) + fract(u.y + 0.5 * float(half_plane))) / float(HBAO_STEPS);
         Look l = look(face, p.position, side * (max(reach, 1.0 / 256.0) * r_max()));
         float squared = dot(l.surface, l.surface);
-        bool near = l.seen && squared < r_max() * r_max() && elevation(l, p.normal) > 0.0;
+        bool near = l.seen && within(l.surface, 1.0) && elevation(l, p.normal) > 0.0;
         if (near) highest = max(highest, dot(l.surface, v) * inversesqrt(max(squared, 1.0e-30)));
         sums.hidden += l.seen && !l.hidden ? 0.0 : 1.0;
         sums.unknown += l.seen && (!l.hidden || near) ? 0.0 : 1.0;

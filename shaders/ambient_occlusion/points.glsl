@@ -2,9 +2,10 @@
 // are spread evenly over the volume up to r_max, since what a direction meets on its way is mostly
 // told by the points far out. The estimator's point_occlusion() says what each point counts.
 //
-// Where the paper clamps |p - s| to r_max, the range of a view's occluders is counted from the point
-// here: what is recorded within r_max of it stands in its way, what is nearer to the view by more is
-// another thing that hides it. The latter, and what hides the surface itself, leave the point unknown.
+// Where the paper counts the range of occluders from the surface, it is counted from the point here:
+// what is recorded within r_max of the point stands in its way, unless it is much farther from the
+// surface than the point can be; what is nearer to the view is another thing that hides it. The
+// latter, and what hides the surface itself, leave the point unknown.
 
 void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
   vec3 x, y;
@@ -16,8 +17,7 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
     vec3 offset = direction * (pow(u.z, 1.0 / 3.0) * r_max());
     Look l = look(face, p.position, offset);
     float rise = elevation(l, p.normal);
-    vec3 before = l.surface - offset;
-    bool near = l.seen && rise > 0.0 && dot(before, before) < r_max() * r_max();
+    bool near = l.seen && rise > 0.0 && within(l.surface - offset, 1.0) && within(l.surface, 1.5);
     bool blocked = near && l.hidden;
     sums.occlusion += near ? point_occlusion(rise, blocked) : 0.0;
     sums.hidden += l.seen && !l.hidden ? 0.0 : 1.0;
