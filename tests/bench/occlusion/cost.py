@@ -110,7 +110,7 @@ def cost(options):
     for estimator in options.estimators:
         named = views_of(estimator)
         taken = by_turns(shots, options, distance, named)
-        samples = {name: shots.samples_taken(distance, settings) for name, settings in named.items()}
+        samples = {name: shots.samples_taken(distance, **settings) for name, settings in named.items()}
         _, single_ms, _ = taken[variants.SINGLE]
         rows = {name: {"ms": ms, "draw ms": drawing, "samples": samples[name], "time": ms / single_ms,
                        "samples ratio": samples[name] / samples[variants.SINGLE],

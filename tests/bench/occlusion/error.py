@@ -14,7 +14,7 @@ SCENES = ("sponza_crytek", "igea_deform", "colonnade", "confined")
 # The errors' own picture: grey is none, and so often enlarged.
 GAIN = 2.0
 _FORMATS = {"rmse": ".4f", "less by": ".1%", "bias": "+.4f", "lit rmse": ".4f", "lit less by": ".1%", "lit bias": "+.4f",
-            "Cycles rmse": ".4f", "ms": ".0f"}
+            "Cycles rmse": ".4f"}
 
 
 def scenes(options):
@@ -61,13 +61,10 @@ def measure(path, options):
     rows, taken = {"rays": {"Cycles rmse": rmse(truth - cycles, seen)}}, {}
     for estimator in options.estimators:
         for name, settings in variants.variants(estimator).items():
-            shot = shots.estimate(options.samples, distance, **settings)
-            taken[estimator, name] = shot.occlusion
-            rows[f"{estimator} {name}"] = {"ms": shot.milliseconds("ambient_occlusion", "occlusion_") / options.samples}
+            taken[estimator, name] = shots.estimate(options.samples, distance, **settings).occlusion
     lit = shots.lit() & seen
     for (estimator, name), occlusion in taken.items():
-        row = rows[f"{estimator} {name}"]
-        row.update(judge(occlusion, truth, cycles, seen, lit))
+        row = rows[f"{estimator} {name}"] = judge(occlusion, truth, cycles, seen, lit)
         single = rows[f"{estimator} {variants.SINGLE}"]
         if name != variants.SINGLE:
             row["less by"], row["lit less by"] = (reduced(row[key], single[key]) for key in ("rmse", "lit rmse"))
@@ -82,8 +79,10 @@ def measure(path, options):
 
 def run(options):
     """Measures and prints; returns what was found."""
-    found = [measure(path, options) for path in scenes(options)]
-    for scene in found:
+    found = []
+    for path in scenes(options):
+        scene = measure(path, options)
+        found.append(scene)
         sun = "; a sun was added, for the scene has no lamp" if scene["sun_added"] else ""
         tables.show(f"error: {scene['scene']}, {options.size}, {options.samples} samples of the film, range {scene['distance']:.2f} m, "
                     f"surfaces on {scene['surfaces']:.0%} of the picture, of them {scene['lit']:.0%} lit{sun}", scene["rows"], _FORMATS)

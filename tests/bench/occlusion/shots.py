@@ -28,6 +28,8 @@ FARTHEST = 1e9
 # Less light than this is none, W/m^2 per steradian: what single precision leaves of an N.L of 0.
 UNLIT = 1e-4
 SUN_WATTS = 3.0
+# A view and pixel: six slices of four for HBAO, whatever is asked for, and what the others are asked for here.
+HBAO_SAMPLES, POINT_SAMPLES = 24, 15
 
 
 class Shot(NamedTuple):
@@ -111,8 +113,21 @@ class Shots:
         return Shot({name: np.asarray(job.read(name)) for name in passes}, dict(job.stats()))
 
     def estimate(self, samples, distance, passes=("AO",), **occlusion):
-        """The occlusion that views tell; `occlusion` as in settings['occlusion'] of a request."""
-        return self.take("realtime", passes, samples, occlusion={"distance": distance, "filter": "off", **occlusion})
+        """The occlusion that views tell, without filter; `occlusion` as in settings['occlusion'] of a request."""
+        return self.take("realtime", passes, samples, occlusion={"distance": distance, "filter": "off", "samples": POINT_SAMPLES, **occlusion})
+
+    def samples_taken(self, distance, **occlusion):
+        """Samples that one sample of the film takes of all views together, the mean over all surfaces.
+
+        Read from the pictures of it: how many views there are from that of their weights, which shows three, and
+        the share of the samples that they may take from the colours of the other.
+        """
+        shown = {picture: self.estimate(1, distance, ("Combined",), **occlusion, picture=picture).passes["Combined"].astype(np.float64)
+                 for picture in ("weights", "samples")}
+        views = sum(shown["weights"][:, :, channel].max() > 0.0 for channel in range(3))
+        surfaces = shown["weights"][:, :, :3].max(axis=2) > 0.0
+        most = HBAO_SAMPLES if occlusion["estimator"] == "hbao" else POINT_SAMPLES
+        return views * most * float(share_of(shown["samples"])[surfaces].mean())
 
     def trace(self, samples, distance):
         """The occlusion that rays tell."""
@@ -164,6 +179,12 @@ def quiet():
         os.dup2(kept, 1)
         os.close(kept)
         os.close(nowhere)
+
+
+def share_of(heat):
+    """From the colours of a picture of samples to what they stand for, 1/8 to 7/8; whole red is 1. float[..., channels]"""
+    red, green, blue = heat[..., 0], heat[..., 1], heat[..., 2]
+    return np.select([(green < 1.0) & (blue > red), green >= 1.0, green > 0.0], [0.125 + 0.25 * green, 0.5 + 0.25 * (red - blue), 0.875 - 0.25 * green], 1.0)
 
 
 def ignore(sentence):
