@@ -93,8 +93,9 @@ void AmbientOcclusion::bind_view(const View& view, const Sample& sample, int lay
   block_.write(0, sizeof block, &block);
 
   programs_.get(sample_program(options)).use();
-  sample.g_buffer.bind_bins();
   sample.g_buffer.bind_surfaces();
+  sample.g_buffer.depth().bind(1);
+  glBindSampler(1, 0);
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, block_.id());
   switch (view.kind) {
     case ViewKind::kCamera: sample.g_buffer.depth().bind(0); break;
@@ -121,8 +122,6 @@ std::vector<Estimate> AmbientOcclusion::probe(const Sample& sample, const std::v
   buffer.clear();
   for (size_t k = 0; k < views.size(); ++k) {
     bind_view(views[k], sample, int(k), int(views.size()), stride, options_for(views[k], true));
-    sample.g_buffer.depth().bind(1);
-    glBindSampler(1, 0);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, buffer.id());
     glDispatchCompute(GLuint(probes + 63) / 64, 1, 1);
   }
@@ -236,10 +235,17 @@ void AmbientOcclusion::estimate(const Sample& sample) {
 
 void AmbientOcclusion::estimate_view(const View& view, const Sample& sample, int layer,
                                      const SampleOptions& options) {
-  bind_view(view, sample, layer, 1, 1, options);
+  // Phantom views come last, and ask what others have seen.
+  const int earlier = std::min(layer, 1 + int(lamps_.size()));
+  bind_view(view, sample, layer, earlier, 1, options);
   estimates_.bind_image(0, GL_WRITE_ONLY);
   if (options.bent_normals) closed_.bind_image(1, GL_WRITE_ONLY);
-  sample.g_buffer.dispatch_surfaces();
+  if (view.kind == ViewKind::kPhantom) {
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    estimates_.bind(2);
+    glBindSampler(2, 0);
+  }
+  glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
 }
 
 void AmbientOcclusion::combine(const Sample& sample, int first, int last, bool bent,

@@ -25,6 +25,7 @@ gl::ProgramSource sample_program(const SampleOptions& options) {
                     fmt::format("HBAO_SLICES {}", kHbaoSlices),
                     fmt::format("HBAO_STEPS {}", kHbaoSteps),
                     fmt::format("CAMERA_VIEW {}", int(options.view == ViewKind::kCamera)),
+                    fmt::format("PHANTOM {}", int(options.view == ViewKind::kPhantom)),
                     fmt::format("CUBE {}", int(options.cube)),
                     fmt::format("CASCADES {}", int(options.cascades)),
                     fmt::format("IMPORTANCE {}", int(options.importance_sampling)),

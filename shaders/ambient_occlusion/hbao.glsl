@@ -19,7 +19,8 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
   vec3 u = sequence_point(p, first);
   float open = 0.0, whole = 0.0;
   vec3 closed = vec3(0.0);
-  for (int plane = 0; plane < HBAO_SLICES / 2; ++plane) {
+  int planes = count > 0u ? HBAO_SLICES / 2 : 0;
+  for (int plane = 0; plane < planes; ++plane) {
     float angle = 2.0 * HALF_PI * (float(plane) + u.x) / float(HBAO_SLICES / 2);
     vec3 side = cos(angle) * x + sin(angle) * y;
     vec2 lean = vec2(dot(p.normal, side), dot(p.normal, v));
@@ -47,7 +48,7 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
       g = -g;
     }
   }
-  float samples = float(HBAO_SLICES * HBAO_STEPS);
+  float samples = float(2 * planes * HBAO_STEPS);
   sums.occlusion += samples * clamp(1.0 - open / max(whole, 1.0e-6), 0.0, 1.0);
   sums.closed += samples * closed / max(whole, 1.0e-6);
   sums.count += samples;

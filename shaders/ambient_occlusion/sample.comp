@@ -1,6 +1,6 @@
 // One view's estimate of how occluded every pixel's surface is: the body of the loops of Algorithm 1.
 #define G_BUFFER_READ 1
-#include "rasterize/bins.glsl"
+#include "gpu_scene/view_shared.h"
 #include "rasterize/g_buffer.glsl"
 #include "ambient_occlusion/estimate.glsl"
 #if ESTIMATOR == ALCHEMY
@@ -16,16 +16,19 @@
 #include "ambient_occlusion/points.glsl"
 #endif
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 1) uniform sampler2D camera_depths;
 #if PROBES
 layout(std430, binding = 3) writeonly buffer Probes { OcclusionProbe probes[]; };
-layout(binding = 1) uniform sampler2D camera_depths;
 #else
 // x: occlusion, y: weight, z: samples relative to the most there may be; w: how much of the hemisphere
 // is hidden from the view, 0..1
 layout(binding = 0, rgba16f) writeonly uniform image2DArray estimates;
 #if BENT_NORMALS
 layout(binding = 1, rgba16f) writeonly uniform image2DArray closed_directions;
+#endif
+#if PHANTOM
+layout(binding = 2) uniform sampler2DArray earlier_estimates;
 #endif
 #endif
 
@@ -39,18 +42,56 @@ float view_weight(Sums sums, float facing) {
   return near * (occlusion.range.z + (1.0 - occlusion.range.z) * facing);
 }
 
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-#if PROBES
-  // One pixel of each so many, whatever it shows: the list's order is another one each time.
-  uint index = i * occlusion.place.z + hash(i) % occlusion.place.z;
-  ivec2 pixel = pixel_of(index);
-  if (pixel.y >= view.size.y || texelFetch(camera_depths, pixel, 0).r <= 0.0) return;
+// How much a pixel needs further views, 0..1: not at all where one has seen the whole hemisphere open.
+float need(ivec2 pixel) {
+#if PHANTOM && !PROBES
+  float hidden = 1.0;
+  for (int k = 0; k < int(occlusion.place.w); ++k)
+    hidden = min(hidden, texelFetch(earlier_estimates, ivec3(pixel, k), 0).w);
+  return clamp(8.0 * hidden, 0.0, 1.0);
 #else
-  if (i >= bins[material_count + 1u].count) return;
-  uint index = pixels[i];
-  ivec2 pixel = pixel_of(index);
+  return 1.0;
 #endif
+}
+
+#if IMPORTANCE
+shared vec2 wishes[64];  // of the tile's pixels: more samples by (4.5), and 1, or nothing
+shared vec2 row_sums[8];
+
+// The mean of (4.5) over the pixels of a tile, since they run together and would wait for the one with
+// the most; rounded by chance, so that its expectation is right.
+uint tile_samples(float more, bool counts) {
+  uint i = gl_LocalInvocationIndex;
+  wishes[i] = counts ? vec2(more, 1.0) : vec2(0.0);
+  barrier();
+  // In a fixed order: the same picture each time.
+  vec2 sum = vec2(0.0);
+  for (uint k = 0u; k < (i < 8u ? 8u : 0u); ++k) sum += wishes[8u * i + k];
+  if (i < 8u) row_sums[i] = sum;
+  barrier();
+  sum = vec2(0.0);
+  for (int y = 0; y < 8; ++y) sum += row_sums[y];
+  uint tile = gl_WorkGroupID.x + (gl_WorkGroupID.y << 16);
+  float chance = unit_float(hash(tile + hash(occlusion.samples.z + occlusion.samples.w)));
+  return uint(sum.x / max(sum.y, 1.0) + chance);
+}
+#endif
+
+void main() {
+#if PROBES
+  // One pixel of each so many.
+  uint probe = gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex;
+  uint index = probe * occlusion.place.z + hash(probe) % occlusion.place.z;
+#else
+  uint index = gl_GlobalInvocationID.y * uint(view.size.x) + gl_GlobalInvocationID.x;
+  if (gl_GlobalInvocationID.x >= uint(view.size.x)) index = 0xffffffffu;
+#endif
+  ivec2 pixel = ivec2(index % uint(view.size.x), index / uint(view.size.x));
+  bool covered = index / uint(view.size.x) < uint(view.size.y);
+  pixel = covered ? pixel : ivec2(0);
+  covered = covered && texelFetch(camera_depths, pixel, 0).r > 0.0;
+  float needed = covered ? need(pixel) : 0.0;
+
   GBufferPixel g = read_g_buffer(pixel);
   Place p;
   p.position = g.position;
@@ -61,30 +102,31 @@ void main() {
   Face face = main_face(p.position);
   float facing = max(dot(towards_view(face), p.normal), 0.0);  // (4.4)
 
+  bool asked = needed > 0.0;
   Sums sums = Sums(0.0, 0.0, 0.0, vec3(0.0), 0.0);
 #if IMPORTANCE
   uint initial = min(occlusion.samples.y, occlusion.samples.x);
-  estimate(p, face, 0u, initial, sums);
+  estimate(p, face, 0u, asked ? initial : 0u, sums);
   float more = float(occlusion.samples.x - initial) * view_weight(sums, facing) *
-               0.5 * (1.0 + clamp(sums.occlusion / sums.count, 0.0, 1.0));  // (4.5)
-  // Rounded by chance, so that its expectation is right, and for neighbours alike, since they run
-  // together and the slowest holds the others up.
-  uint block = uint(pixel.x >> 3) + (uint(pixel.y >> 3) << 16);
-  float chance = unit_float(hash(block + hash(occlusion.samples.z + occlusion.samples.w)));
-  estimate(p, face, initial, uint(more + chance), sums);
+               0.5 * (1.0 + clamp(sums.occlusion / max(sums.count, 1.0), 0.0, 1.0));  // (4.5)
+  uint further = tile_samples(more, asked);
+  estimate(p, face, initial, asked ? further : 0u, sums);
 #else
-  estimate(p, face, 0u, occlusion.samples.x, sums);
+  estimate(p, face, 0u, asked ? occlusion.samples.x : 0u, sums);
 #endif
-  float blocked = clamp(sums.occlusion / sums.count, 0.0, 1.0), weight = view_weight(sums, facing);
+  if (!covered) return;
+  float count = max(sums.count, 1.0);
+  float blocked = clamp(sums.occlusion / count, 0.0, 1.0);
+  float weight = asked ? needed * view_weight(sums, facing) : 0.0;
 #if PROBES
-  uint probe = i * occlusion.place.w + occlusion.place.x;
-  probes[probe] = OcclusionProbe(blocked, weight, dot(g.position, view.axis.xyz), 1u);
+  probes[probe * occlusion.place.w + occlusion.place.x] =
+      OcclusionProbe(blocked, weight, dot(g.position, view.axis.xyz), 1u);
 #else
   ivec3 at = ivec3(pixel, occlusion.place.x);
   imageStore(estimates, at, vec4(blocked, weight, sums.count / float(occlusion.samples.x),
-                                  sums.hidden / sums.count));
+                                 sums.hidden / count));
 #if BENT_NORMALS
-  imageStore(closed_directions, at, vec4(sums.closed / sums.count, 0.0));
+  imageStore(closed_directions, at, vec4(sums.closed / count, 0.0));
 #endif
 #endif
 }
