@@ -12,10 +12,10 @@
 
 namespace panoptes::ambient_occlusion {
 
-// The pair of Figure 4.11: two views behind the camera and to either side, level with it, which
-// look across each other at what is `focus` metres in front of it. An orthographic camera has a
-// pair of orthographic views, turned to either side about that point. All lengths are shares of the
-// focus; one that no camera can have is replaced by the depth of the scene's middle.
+// The pair of Figure 4.11: two views a little behind the camera and to either side, level with it,
+// which look across each other at what is `focus` metres in front of it. An orthographic camera has
+// a pair of orthographic views, turned to either side about that point. All lengths are shares of
+// the focus; one that no camera can have is replaced by the depth of the scene's middle.
 //
 // The first is on the camera's left. Where the camera stands within `bounds`, those of the scene,
 // both do, since nothing is seen through the walls of a room.

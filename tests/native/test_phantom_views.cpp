@@ -77,7 +77,7 @@ TEST(PhantomPair, StandsBehindTheCameraToEitherSideAndLevelWithIt) {
     for (const LightView& v : pair) {
       EXPECT_LT(glm::dot(v.origin - eye, seen.axis), 0);
       EXPECT_NEAR(v.origin.z, eye.z, 1e-9);
-      EXPECT_LT(glm::length(v.origin - eye), 1.25 * 4) << "close, compared with the focus";
+      EXPECT_LT(glm::length(v.origin - eye), 0.75 * 4) << "close, compared with the focus";
       EXPECT_EQ(v.axis, seen.axis);
     }
     // They look across each other: each has the focus near the middle of its window, and what the
