@@ -109,29 +109,25 @@ def start():
 
 
 def make_confined():
-    """The storeroom: 5 x 14 x 2.8 m, the camera in its aisle."""
+    """The storeroom: 5 x 14 x 2.8 m and a side room behind it, the camera in its aisle."""
     scene = start()
     chalk, grey = plain("chalk", (0.75, 0.72, 0.67), 0.9), plain("concrete", (0.5, 0.5, 0.5), 0.9)
     wood, card = plain("wood", (0.45, 0.28, 0.14), 0.7), plain("cardboard", (0.58, 0.42, 0.25), 0.9)
     iron = plain("iron", (0.2, 0.22, 0.25), 0.5)
-    left, right, near, far, height = -2.5, 2.5, -4.0, 10.0, 2.8
+    left, right, near, far, end, height = -2.5, 2.5, -4.0, 10.0, 12.2, 2.8
     boxes("room", chalk, [
-        ((left - 0.2, near - 0.2, 0.0), (left, far + 0.2, height)),
-        ((right, near - 0.2, 0.0), (right + 0.2, 4.6, height)),
-        ((right, 5.7, 0.0), (right + 0.2, far + 0.2, height)),
+        ((left - 0.2, near - 0.2, 0.0), (left, end + 0.2, height)),
+        ((right, near - 0.2, 0.0), (right + 0.2, end + 0.2, height)),
         ((left, near - 0.2, 0.0), (right, near, height)),
-        ((left, far, 0.0), (right, far + 0.2, height)),
-        # The side room behind the doorway.
-        ((right + 0.1, 4.2, 0.0), (5.2, 4.4, height)),
-        ((right + 0.1, 6.4, 0.0), (5.2, 6.6, height)),
-        ((5.2, 4.2, 0.0), (5.4, 6.6, height)),
+        # The wall before the side room, with a doorway.
+        ((left, far, 0.0), (0.9, far + 0.2, height)),
+        ((1.7, far, 0.0), (right, far + 0.2, height)),
+        ((left, end, 0.0), (right, end + 0.2, height)),
     ])
-    boxes("floor and ceiling", grey, [((left - 0.2, near - 0.2, -0.2), (5.4, far + 0.2, 0.0)),
-                                      ((left - 0.2, near - 0.2, height), (5.4, far + 0.2, height + 0.2))])
-    # Stalls along both walls; the doorway interrupts those on the right.
-    stalls = [(side, 1.2 + 0.6 * i) for i in range(13) for side in (-1, 1) if side < 0 or not 4.4 < 1.2 + 0.6 * i < 6.3]
-    boxes("stalls", wood, [((left, y, 0.0), (left + 0.9, y + 0.05, 2.2)) if side < 0 else ((right - 0.9, y, 0.0), (right, y + 0.05, 2.2))
-                           for side, y in stalls])
+    boxes("floor and ceiling", grey, [((left - 0.2, near - 0.2, -0.2), (right + 0.2, end + 0.2, 0.0)),
+                                      ((left - 0.2, near - 0.2, height), (right + 0.2, end + 0.2, height + 0.2))])
+    # Stalls along both walls.
+    boxes("stalls", wood, [((x, 1.2 + 0.6 * i, 0.0), (x + 0.9, 1.25 + 0.6 * i, 2.2)) for i in range(13) for x in (left, right - 0.9)])
     # Cartons on end, close to each other, as high as a man.
     dice, cartons = random.Random(5), shapes.Shape()
     for _ in range(40):
@@ -147,7 +143,7 @@ def make_confined():
     (node.inputs.get("Emission") or node.inputs["Emission Color"]).default_value = (1.0, 0.95, 0.85, 1.0)
     node.inputs["Emission Strength"].default_value = 9.0
     boxes("tubes", glow, [((-0.04, y, height - 0.06), (0.04, y + 1.2, height - 0.02)) for y in (-0.4, 2.6, 5.6)])
-    lamp("side lamp", "SPOT", 120.0, (4.9, 6.2, 2.5), (3.4, 4.6, 0.0), spot_size=math.radians(55.0), shadow_soft_size=0.03)
+    lamp("side lamp", "SPOT", 120.0, (-2.2, 10.5, 2.5), (-1.2, 11.6, 0.0), spot_size=math.radians(55.0), shadow_soft_size=0.03)
     world((0.8, 0.9, 1.0), 0.25)
     camera((0.02, -0.8, 1.6), (0.0, 5.0, 1.1), 24.0)
     return scene

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The benchmark of paths runs to its end and measures what it says; its times are nobody's bar here."""
+"""The benchmarks run to their ends and measure what they say; their times are nobody's bar here."""
 
 import json
 import os
@@ -13,18 +13,29 @@ ROOT = HERE.parents[1]
 BLENDER = os.environ.get("PANOPTES_BLENDER", "/usr/bin/blender")
 
 
-def bench_paths(*arguments):
-    """What the benchmark of paths prints as JSON for the atrium at a few pixels, one sample each."""
+def bench(script, *arguments):
+    """What a benchmark prints as JSON."""
     if not any((ROOT / "addon" / "panoptes").glob("panoptes_native*.so")):
         pytest.skip("the native module is not built; run ./panoptes build")
     done = subprocess.run(
-        [BLENDER, "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / "paths_vs_cycles.py", "--",
-         "--scene", ROOT / "blend_scenes" / "atrium.blend", "--size", "32x18", "--samples", "1", "--json", *arguments],
+        [BLENDER, "-b", "--factory-startup", "--python-exit-code", "1", "-P", HERE / script, "--", "--json", *arguments],
         capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
-    found, _ = json.JSONDecoder().raw_decode(done.stdout[done.stdout.index("{"):])
+    return json.JSONDecoder().raw_decode(done.stdout[done.stdout.index("{"):])[0]
+
+
+def bench_paths(*arguments):
+    """That of paths for the atrium at a few pixels, one sample each."""
+    found = bench("paths_vs_cycles.py", "--scene", ROOT / "blend_scenes" / "atrium.blend", "--size", "32x18", "--samples", "1",
+                  *arguments)
     assert found["size"] == [32, 18]
     return found
+
+
+def bench_occlusion(section, scene, *arguments):
+    """What a section of that of ambient occlusion finds on a scene of ours, at a few pixels, with one estimator."""
+    return bench("occlusion/run.py", "--section", section, "--scene", ROOT / "blend_scenes" / f"{scene}.blend", "--size", "96x54",
+                 "--samples", "4", "--reference-samples", "64", "--estimator", "alchemy", *arguments)[section]
 
 
 @pytest.mark.slow
@@ -57,3 +68,41 @@ def test_the_fast_half_of_figure_7_9_traces_fewer_rays(tmp_path):
     assert 0.0 < rows["fast"]["rays_a_pixel"] < rows["full"]["rays_a_pixel"]
     assert rows["fast"]["relative_rmse"] > 0.0 and rows["fast"]["sample_ms_ratio"] > 0.0
     assert (tmp_path / "figure_7_9.png").stat().st_size > 0
+
+
+@pytest.mark.slow
+def test_maps_of_lamps_bring_occlusion_nearer_to_that_of_rays(tmp_path):
+    found, = bench_occlusion("error", "colonnade", "--pictures", tmp_path)
+    rows = found["rows"]
+    assert found["lit"] > 0.5
+    assert rows["rays"]["Cycles rmse"] < 0.05
+    for name in ("alchemy lamps", "alchemy lamps + IS"):
+        assert rows[name]["lit less by"] > 0.3
+    assert (tmp_path / "error_colonnade_alchemy.png").stat().st_size > 0
+
+
+@pytest.mark.slow
+def test_phantom_views_help_where_no_lamp_shines():
+    found, = bench_occlusion("error", "confined")
+    rows = found["rows"]
+    assert found["lit"] < 0.05
+    assert abs(rows["alchemy lamps"]["less by"]) < 0.05
+    assert rows["alchemy phantoms + IS"]["less by"] > 0.3
+
+
+@pytest.mark.slow
+def test_occlusion_by_several_views_is_steadier():
+    rows = bench_occlusion("stability", "colonnade", "--every", "10")["rows"]
+    assert rows["alchemy single view"]["points"] > 500
+    assert rows["alchemy lamps"]["steadier"] > 1.5
+    assert rows["rays"]["deviation"] < rows["alchemy lamps"]["deviation"]
+
+
+@pytest.mark.slow
+def test_the_cost_of_views_is_told_beside_their_samples():
+    rows = bench_occlusion("cost", "colonnade", "--repeat", "1")["estimators"]["alchemy"]
+    assert rows["2 views"]["samples ratio"] == pytest.approx(2.0) and rows["3 views"]["samples ratio"] == pytest.approx(3.0)
+    for views in ("2 views", "3 views"):
+        assert rows[f"{views} + IS"]["samples"] < rows[views]["samples"]
+        assert rows[views]["time"] > 0.0
+    assert rows["phantom pair + IS"]["draw ms"] > 0.0

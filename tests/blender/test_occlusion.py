@@ -14,6 +14,7 @@ from panoptes import changeover, native, occlusion, panels, passes, pieces, requ
 from panoptes.cli import options
 from panoptes.cli.failure import Failure
 from panoptes.refinement import Refinement
+from test_engine import ground, lamp, render_combined, render_passes, world
 from test_paths import final, viewport
 from test_user_interface import draw
 
@@ -303,3 +304,71 @@ class TestCommandLine:
     def test_bad_values(self, scene, name, value):
         with pytest.raises(Failure, match=name):
             self.assign(scene, (f'ambient_occlusion.{name}', value))
+
+
+class TestForReal:
+    """Pictures from the native module."""
+
+    @pytest.fixture(autouse=True)
+    def _needs_native(self, native_module):
+        native.use_factory(None)
+
+    @pytest.fixture
+    def yard(self, scene):
+        """Rows of cubes on a floor under a grey sky and a sun, seen from above; 64x48 pixels."""
+        ground()
+        for x in range(-2, 3):
+            for y in range(-1, 2):
+                bpy.ops.mesh.primitive_cube_add(size=1.0, location=(1.5 * x, 1.7 * y, 0.5))
+        lamp('SUN', 1.0)
+        world((0.5, 0.5, 0.5))
+        scene.world.light_settings.distance = 2.0
+        scene.view_layers[0].use_pass_ambient_occlusion = True
+        scene.render.resolution_x, scene.render.resolution_y = 64, 48
+        scene.panoptes.samples = 8
+        return scene
+
+    def test_pass_resembles_that_of_rays(self, yard, tmp_path):
+        estimates = []
+        for estimator in ('ALCHEMY', 'SSAO', 'HBAO'):
+            yard.panoptes.ambient_occlusion.estimator = estimator
+            estimates.append(render_passes(yard, tmp_path)['AO'])
+        yard.panoptes.method, yard.panoptes.samples = 'primitive', 64
+        rays = render_passes(yard, tmp_path)['AO']
+        # Something is hidden, and not all of it: black, white and the inverse are farther off.
+        assert all(np.abs(rays - other).mean() > 0.3 for other in (0.0, 1.0, 1.0 - rays))
+        for ours in estimates:
+            assert np.abs(ours - rays).mean() < 0.25 and np.corrcoef(ours.ravel(), rays.ravel())[0, 1] > 0.85
+
+    def test_world_is_darkened(self, yard, tmp_path):
+        dark = render_combined(yard, tmp_path)
+        yard.panoptes.ambient_occlusion.strength = 0.0
+        bright = render_combined(yard, tmp_path)
+        assert (dark <= bright + 1e-4).all() and dark[..., :3].mean() < 0.95 * bright[..., :3].mean()
+        # The top of the cube in the middle is open.
+        assert dark[24, 32, :3] == pytest.approx(bright[24, 32, :3], rel=0.05)
+
+    def test_each_picture_shows_something_else(self, yard, tmp_path):
+        pictures = [render_combined(yard, tmp_path)]
+        for picture in PICTURES:
+            yard.panoptes.debug_picture = f'occlusion_{picture}'
+            found = render_combined(yard, tmp_path)
+            assert not session.last_error and np.isfinite(found).all() and found[..., :3].max() > 0.0
+            assert all(not np.allclose(found, other, atol=1e-3) for other in pictures)
+            pictures.append(found)
+
+    def test_nothing_is_left_of_a_picture(self, yard, tmp_path):
+        before = render_combined(yard, tmp_path)
+        yard.panoptes.debug_picture = 'occlusion_weights'
+        render_combined(yard, tmp_path)
+        yard.panoptes.debug_picture = 'none'
+        assert np.array_equal(render_combined(yard, tmp_path), before)
+
+    def test_every_setting_is_known(self, yard):
+        ours = yard.panoptes.ambient_occlusion
+        ours.phantom_cameras = bpy.data.collections.new('Views')
+        add_camera(ours.phantom_cameras, 'A').location.z = 8.0
+        for estimator in ('ALCHEMY', 'SSAO', 'HBAO'):
+            ours.estimator = estimator
+            bpy.ops.render.render()
+            assert not session.last_error and not session.last_stats['warnings']

@@ -72,6 +72,11 @@ def test_debug_picture_replaces_the_scene_while_asked_for(shown):
     assert shown['no debug'] == pytest.approx(shown['turned'], abs=1e-6)
 
 
+def test_bent_normals_are_shown(shown):
+    # The plane is open straight upwards.
+    assert shown['bent normals'][:3] == pytest.approx([0.5, 0.5, 1.0], abs=0.05)
+
+
 def test_final_render_beside_the_viewport(shown):
     assert shown['final'] == [64, 48]
 

@@ -100,6 +100,7 @@ def other_shading():
 
 run([('start', start, picture), ('world', edit_world, picture), ('plane', add_plane, picture),
      ('turned', turn_view, picture), ('debug', lambda: show_debug_picture('tiles'), picture),
+     ('bent normals', lambda: show_debug_picture('occlusion_bent_normals'), picture),
      ('no debug', lambda: show_debug_picture('none'), picture),
      ('paths', lambda: trace_paths('primitive'), picture_of_paths),
      ('no paths', lambda: trace_paths('auto'), picture),
