@@ -3,7 +3,7 @@
 
     blender -b --factory-startup -P blend_scenes/make_occlusion.py
 
-confined   a storeroom: stalls, cartons and pipes, all upright and close to each other. Its tubes glow, and
+confined   a storeroom: partitions, cartons and pipes, all upright and close to each other. Its tubes glow, and
            its one lamp shines into a side room, so that no shadow map holds what the camera sees.
 colonnade  a paved yard with columns, piers and crates under a sun whose shadow map holds most of it. In 60 frames
            the camera walks along the columns, which hide and show what stands behind them.
@@ -126,15 +126,12 @@ def make_confined():
     ])
     boxes("floor and ceiling", grey, [((left - 0.2, near - 0.2, -0.2), (right + 0.2, end + 0.2, 0.0)),
                                       ((left - 0.2, near - 0.2, height), (right + 0.2, end + 0.2, height + 0.2))])
-    # Stalls along both walls.
-    boxes("stalls", wood, [((x, 1.2 + 0.6 * i, 0.0), (x + 0.9, 1.25 + 0.6 * i, 2.2)) for i in range(13) for x in (left, right - 0.9)])
-    # Cartons on end, close to each other, as high as a man.
-    dice, cartons = random.Random(5), shapes.Shape()
-    for _ in range(40):
-        x, y = dice.uniform(-1.4, 1.2), dice.uniform(1.8, 8.0)
-        size = (dice.uniform(0.15, 0.35), dice.uniform(0.15, 0.35), dice.uniform(1.2, 2.2))
-        cartons.box((x, y, 0.0), (x + size[0], y + size[1], size[2]))
-    cartons.object("cartons", card)
+    # Partitions up to the ceiling stand with their ends to the camera, a step apart: of each it sees one side at
+    # most, and what is between them is occluded by both.
+    rows = ((1.8, (-0.8, -0.5, 0.45, 0.75)), (3.4, (-1.0, -0.68, -0.2, 0.12, 0.5, 0.85)), (5.0, (-0.75, -0.4, 0.25, 0.6, 1.0)),
+            (6.6, (-0.9, -0.5, -0.1, 0.25, 0.7, 1.05)))
+    boxes("partitions", wood, [((x - 0.04, y, 0.0), (x + 0.04, y + 0.8, height)) for y, xs in rows for x in xs])
+    crates("cartons", card, [(-1.1, 8.2, 3), (0.2, 8.3, 4), (1.2, 8.2, 2)], 7)
     first = pipe(0.06, height).object("pipe", iron, (-0.35, 8.6, 0.0))
     for index, x in enumerate((-0.15, 0.05, 0.25)):
         shapes.instance(f"pipe {index}", first.data, (x, 8.6, 0.0))
@@ -145,7 +142,7 @@ def make_confined():
     boxes("tubes", glow, [((-0.04, y, height - 0.06), (0.04, y + 1.2, height - 0.02)) for y in (-0.4, 2.6, 5.6)])
     lamp("side lamp", "SPOT", 120.0, (-2.2, 10.5, 2.5), (-1.2, 11.6, 0.0), spot_size=math.radians(55.0), shadow_soft_size=0.03)
     world((0.8, 0.9, 1.0), 0.25)
-    camera((0.02, -0.8, 1.6), (0.0, 5.0, 1.1), 24.0)
+    camera((0.02, -1.2, 1.6), (0.0, 5.0, 1.2), 35.0)
     return scene
 
 
