@@ -20,8 +20,8 @@ LEAST_SHARE = 0.3
 # How far, as a share of the range of occlusion, the four pixels may lie from the point's plane: beyond that they show
 # another surface. And how nearly they must face as it does.
 OFF_PLANE, SAME_FACING = 0.05, 0.95
-# Rays are slow: they trace every n-th frame.
-TRACED = 6
+# Rays are slow: they trace about so many of the frames.
+TRACED = 10
 _FORMATS = {"deviation": ".4f", "steadier": ".2f", "worst tenth": ".4f", "points": "d", "frames": "d"}
 
 
@@ -129,7 +129,7 @@ def measure(path, options):
         where = frame.find(points, normals, OFF_PLANE * distance)
         for name, settings in names.items():
             tracks[name].add(shots.estimate(options.samples, distance, **settings).occlusion, *where)
-        if index % TRACED == 0:
+        if index % max(1, len(numbers) // TRACED) == 0:
             traced += 1
             rays.add(shots.trace(options.reference_samples, distance), *where)
     rows = {"rays": row(rays, traced)}
