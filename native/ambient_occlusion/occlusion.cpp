@@ -21,6 +21,8 @@ constexpr size_t kDeepLamps = 4;
 constexpr float kLeastContribution = 0.002f;
 // Elevations below are the surface itself: its curvature, and rounding.
 constexpr float kLeastSine = 0.02f;
+// Pixels along a side of a work group of sample.comp.
+constexpr int kTile = 16;
 // Filter taps lie on every second pixel, so that nine of them reach over 17.
 constexpr int kFilterStep = 1;
 
@@ -123,7 +125,7 @@ std::vector<Estimate> AmbientOcclusion::probe(const Sample& sample, const std::v
   for (size_t k = 0; k < views.size(); ++k) {
     bind_view(views[k], sample, int(k), int(views.size()), stride, options_for(views[k], true));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, buffer.id());
-    glDispatchCompute(GLuint(probes + 63) / 64, 1, 1);
+    glDispatchCompute(GLuint(probes + kTile * kTile - 1) / (kTile * kTile), 1, 1);
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<shared::OcclusionProbe> found(size_t(probes) * views.size());
@@ -199,11 +201,12 @@ void AmbientOcclusion::estimate(const Sample& sample) {
                                   camera_.height,      views_ + deep, 1};
   want(estimates_, true, layers);
   want(closed_, bent_, layers);
-  for (size_t k = 0; k < views.size(); ++k) {
+  for (int k = 0; k < views_; ++k) {
+    const View& view = views[size_t(k)];
     constexpr const char* kNames[] = {"ambient_occlusion_camera", "occlusion_lamp_views",
-                                      "ambient_occlusion_phantoms"};
-    gl::PassScope scope(timer_, kNames[int(views[k].kind)]);
-    estimate_view(views[k], sample, int(k), options_for(views[k], false));
+                                      "occlusion_phantom_views"};
+    gl::PassScope scope(timer_, kNames[int(view.kind)]);
+    estimate_view(view, sample, k, options_for(view, false));
   }
   if (deep_shadows_ && deep_lamps_.empty()) {
     const float open[4] = {0, 0, 0, 1};
@@ -245,7 +248,8 @@ void AmbientOcclusion::estimate_view(const View& view, const Sample& sample, int
     estimates_.bind(2);
     glBindSampler(2, 0);
   }
-  glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
+  glDispatchCompute(GLuint(camera_.width + kTile - 1) / kTile,
+                    GLuint(camera_.height + kTile - 1) / kTile, 1);
 }
 
 void AmbientOcclusion::combine(const Sample& sample, int first, int last, bool bent,

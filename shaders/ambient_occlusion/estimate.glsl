@@ -12,6 +12,7 @@ struct Sums {
   float occlusion;  // 0..count
   float hidden;     // samples that something stands before, or that lie outside the view
   float unknown;    // of these, the ones that tell nothing about the surface
+  float distances;  // to what was looked at, each at most r_max, relative to it: the sum of (4.3)
   vec3 closed;      // directions that are blocked, by the cosine: 2/3 normal * count if all are
   float count;
 };

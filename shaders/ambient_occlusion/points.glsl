@@ -22,6 +22,9 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
     sums.occlusion += near ? point_occlusion(rise, blocked) : 0.0;
     sums.hidden += l.seen && !l.hidden ? 0.0 : 1.0;
     sums.unknown += l.seen && (!l.hidden || blocked) ? 0.0 : 1.0;
+#if IMPORTANCE
+    sums.distances += l.seen ? min(length(l.surface) * occlusion.range.y, 1.0) : 1.0;
+#endif
     sums.closed += blocked ? direction : vec3(0.0);
   }
   sums.count += float(count);

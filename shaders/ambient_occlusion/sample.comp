@@ -16,7 +16,9 @@
 #include "ambient_occlusion/points.glsl"
 #endif
 
-layout(local_size_x = 8, local_size_y = 8) in;
+// Large groups: on llvmpipe a group costs about as much as a sample of 64 pixels.
+const uint TILE = 16u;
+layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = 1) uniform sampler2D camera_depths;
 #if PROBES
 layout(std430, binding = 3) writeonly buffer Probes { OcclusionProbe probes[]; };
@@ -55,32 +57,23 @@ float need(ivec2 pixel) {
 }
 
 #if IMPORTANCE
-shared vec2 wishes[64];  // of the tile's pixels: more samples by (4.5), and 1, or nothing
-shared vec2 row_sums[8];
-
-// The mean of (4.5) over the pixels of a tile, since they run together and would wait for the one with
-// the most; rounded by chance, so that its expectation is right.
-uint tile_samples(float more, bool counts) {
-  uint i = gl_LocalInvocationIndex;
-  wishes[i] = counts ? vec2(more, 1.0) : vec2(0.0);
-  barrier();
-  // In a fixed order: the same picture each time.
-  vec2 sum = vec2(0.0);
-  for (uint k = 0u; k < (i < 8u ? 8u : 0u); ++k) sum += wishes[8u * i + k];
-  if (i < 8u) row_sums[i] = sum;
-  barrier();
-  sum = vec2(0.0);
-  for (int y = 0; y < 8; ++y) sum += row_sums[y];
+// (4.5). It takes the paper's own weight: where everything is far there is little to find. Rounded by
+// chance, so that its expectation is right, and for a group of pixels alike, since they run together
+// and wait for the one with the most.
+uint further_samples(Sums sums, float facing, uint initial) {
+  float count = max(sums.count, 1.0), b = occlusion.range.z;
+  float weight = b * (1.0 - sums.distances / count) + (1.0 - b) * facing;
+  float more = float(occlusion.samples.x - initial) * weight *
+               0.5 * (1.0 + clamp(sums.occlusion / count, 0.0, 1.0));
   uint tile = gl_WorkGroupID.x + (gl_WorkGroupID.y << 16);
-  float chance = unit_float(hash(tile + hash(occlusion.samples.z + occlusion.samples.w)));
-  return uint(sum.x / max(sum.y, 1.0) + chance);
+  return uint(more + unit_float(hash(tile + hash(occlusion.samples.z + occlusion.samples.w))));
 }
 #endif
 
 void main() {
 #if PROBES
   // One pixel of each so many.
-  uint probe = gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex;
+  uint probe = gl_WorkGroupID.x * TILE * TILE + gl_LocalInvocationIndex;
   uint index = probe * occlusion.place.z + hash(probe) % occlusion.place.z;
 #else
   uint index = gl_GlobalInvocationID.y * uint(view.size.x) + gl_GlobalInvocationID.x;
@@ -91,6 +84,7 @@ void main() {
   pixel = covered ? pixel : ivec2(0);
   covered = covered && texelFetch(camera_depths, pixel, 0).r > 0.0;
   float needed = covered ? need(pixel) : 0.0;
+  bool asked = needed > 0.0;
 
   GBufferPixel g = read_g_buffer(pixel);
   Place p;
@@ -99,18 +93,14 @@ void main() {
   uint key = hash(index + occlusion.samples.w);
   p.first = uvec3(key, hash(key + 1u), hash(key + 2u)) +
             occlusion.samples.z * uvec3(3518319153u, 2882110345u, 2360945575u);
+
   Face face = main_face(p.position);
   float facing = max(dot(towards_view(face), p.normal), 0.0);  // (4.4)
-
-  bool asked = needed > 0.0;
-  Sums sums = Sums(0.0, 0.0, 0.0, vec3(0.0), 0.0);
+  Sums sums = Sums(0.0, 0.0, 0.0, 0.0, vec3(0.0), 0.0);
 #if IMPORTANCE
   uint initial = min(occlusion.samples.y, occlusion.samples.x);
   estimate(p, face, 0u, asked ? initial : 0u, sums);
-  float more = float(occlusion.samples.x - initial) * view_weight(sums, facing) *
-               0.5 * (1.0 + clamp(sums.occlusion / max(sums.count, 1.0), 0.0, 1.0));  // (4.5)
-  uint further = tile_samples(more, asked);
-  estimate(p, face, initial, asked ? further : 0u, sums);
+  estimate(p, face, initial, asked ? further_samples(sums, facing, initial) : 0u, sums);
 #else
   estimate(p, face, 0u, asked ? occlusion.samples.x : 0u, sums);
 #endif
