@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace panoptes::ambient_occlusion {
 
@@ -28,6 +29,14 @@ constexpr int kFilterStep = 1;
 
 // b of (4.2), section 4.4.3.
 float distance_share(Estimator estimator) { return estimator == Estimator::kSsao ? 1.0f : 0.85f; }
+
+// How far occluders are looked for: no farther than anything is from anything else, since points
+// beyond would be open whatever stands there.
+float reach_of(const Settings& settings, const scene::Bounds& bounds) {
+  const float longest = glm::length(bounds.high - bounds.low);
+  return longest > 0 && std::isfinite(longest) ? std::min(settings.distance, longest)
+                                               : settings.distance;
+}
 
 void want(gl::Texture& texture, bool wanted, const gl::TextureOptions& options) {
   const gl::TextureOptions& has = texture.options();
@@ -86,7 +95,8 @@ void AmbientOcclusion::bind_view(const View& view, const Sample& sample, int lay
   shared::OcclusionView block{};
   // Obscurance is weighted by direction alone: where a view is blocked is what it shows.
   const float share = options.obscurance ? 0.0f : distance_share(settings_.estimator);
-  block.range = {settings_.distance, 1.0f / settings_.distance, share, kLeastSine};
+  const float reach = reach_of(settings_, sample.bounds);
+  block.range = {reach, 1.0f / reach, share, kLeastSine};
   block.samples = {uint32_t(most), uint32_t(settings_.initial_samples),
                    sample.index * uint32_t(hbao ? 1 : most), seed_};
   block.place = {uint32_t(layer), uint32_t(view.faces.size()), uint32_t(stride), uint32_t(views)};
@@ -271,7 +281,7 @@ void AmbientOcclusion::filter(const Sample& sample, const gl::Texture& target) {
   sample.g_buffer.bind_bins();
   sample.g_buffer.bind_surfaces();
   sample.g_buffer.depth().bind(1);
-  glUniform1f(3, settings_.distance);
+  glUniform1f(3, reach_of(settings_, sample.bounds));
   const std::array<std::pair<const gl::Texture*, const gl::Texture*>, 2> passes{
       {{&target, &filtered_}, {&filtered_, &target}}};
   for (int axis = 0; axis < 2; ++axis) {

@@ -17,6 +17,8 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
   vec3 v = towards_view(face), x, y;
   frame_around(v, x, y);
   vec3 u = sequence_point(p, first);
+  // A surface that faces away is hidden by itself, and horizons above it tell nothing.
+  bool away = dot(p.normal, v) <= 0.0;
   float open = 0.0, whole = 0.0;
   vec3 closed = vec3(0.0);
   int planes = count > 0u ? HBAO_SLICES / 2 : 0;
@@ -33,8 +35,8 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
         float squared = dot(l.surface, l.surface);
         bool near = l.seen && within(l.surface, 1.0) && elevation(l, p.normal) > 0.0;
         if (near) highest = max(highest, dot(l.surface, v) * inversesqrt(max(squared, 1.0e-30)));
-        sums.hidden += l.seen && !l.hidden ? 0.0 : 1.0;
-        sums.unknown += l.seen && (!l.hidden || near) ? 0.0 : 1.0;
+        sums.hidden += l.seen && !l.hidden && !away ? 0.0 : 1.0;
+        sums.unknown += l.seen && (!l.hidden || near) && !away ? 0.0 : 1.0;
       }
       // The hemisphere ends a quarter turn from the normal.
       float most = clamp(g + HALF_PI, 0.0, 2.0 * HALF_PI);
@@ -49,7 +51,7 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
     }
   }
   float samples = float(2 * planes * HBAO_STEPS);
-  sums.occlusion += samples * clamp(1.0 - open / max(whole, 1.0e-6), 0.0, 1.0);
+  sums.occlusion += whole > 1.0e-6 ? samples * clamp(1.0 - open / whole, 0.0, 1.0) : 0.0;
   sums.closed += samples * closed / max(whole, 1.0e-6);
   sums.count += samples;
 }
