@@ -17,6 +17,8 @@ struct Sums {
   float count;
 };
 
+Sums no_samples() { return Sums(0.0, 0.0, 0.0, 0.0, vec3(0.0), 0.0); }
+
 // Point `i` of a sequence with small gaps in every range of indices: multiples of powers of a number
 // that solves x^4 = x + 1 (Roberts 2018), started at another place for each pixel.
 vec3 sequence_point(Place p, uint i) {

@@ -96,7 +96,7 @@ void main() {
 
   Face face = main_face(p.position);
   float facing = max(dot(towards_view(face), p.normal), 0.0);  // (4.4)
-  Sums sums = Sums(0.0, 0.0, 0.0, 0.0, vec3(0.0), 0.0);
+  Sums sums = no_samples();
 #if IMPORTANCE
   uint initial = min(occlusion.samples.y, occlusion.samples.x);
   estimate(p, face, 0u, asked ? initial : 0u, sums);
