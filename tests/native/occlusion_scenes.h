@@ -12,8 +12,8 @@ using ambient_occlusion::Estimator;
 constexpr Estimator kEstimators[] = {Estimator::kAlchemy, Estimator::kSsao, Estimator::kHbao};
 
 // Share of the light from a white hemisphere that a wall without end takes, `k` times r_max away: a
-// direction meets the wall within r_max where its part towards the wall is more than k, which on the
-// unit disk below the hemisphere is a segment.
+// direction meets the wall within r_max where its part towards the wall is more than k, which on
+// the unit disk below the hemisphere is a segment.
 inline double wall_occlusion(double k) {
   return k >= 1 ? 0 : (std::acos(k) - k * std::sqrt(1 - k * k)) / kPi;
 }

@@ -27,8 +27,8 @@ double distance_to_box(const glm::dvec3& p, const glm::dvec3& center, const glm:
 }
 
 TEST(Occlusion, WhatNothingStandsNearIsOpen) {
-  // On a plain stands a wall and, far from all else, hangs a ball of flat faces. The wall makes lamps
-  // worth looking through.
+  // On a plain stands a wall and, far from all else, hangs a ball of flat faces. The wall makes
+  // lamps worth looking through.
   constexpr float kReach = 1;
   TestScene plain;
   const Id white = plain.add_material(lambert());
@@ -51,7 +51,8 @@ TEST(Occlusion, WhatNothingStandsNearIsOpen) {
         r.occlusion.secondary_views = 1;
         r.occlusion.phantoms = Phantoms::kOn;
         const Picture p = render(s, r);
-        const std::string label = fmt::format("estimator {}, lamp {}", int(estimator), int(lamp.type));
+        const std::string label =
+            fmt::format("estimator {}, lamp {}", int(estimator), int(lamp.type));
         EXPECT_TRUE(effect_of(p, "occlusion_lamp_views").runs) << label;
         int closed = 0;
         Worst open;
@@ -74,7 +75,8 @@ TEST(Occlusion, WhatNothingStandsNearIsOpen) {
 // How occluded what a pixel's centre shows of corner() is.
 double due_in_corner(const gpu_scene::Camera& camera, int x, int y, double reach) {
   const Ray ray = pixel_ray(camera, x, y);
-  const glm::dvec3 floor = on_plane(ray, {0, 0, 0}, {0, 0, 1}), wall = on_plane(ray, {0, 0, 0}, {1, 0, 0});
+  const glm::dvec3 floor = on_plane(ray, {0, 0, 0}, {0, 0, 1}),
+                   wall = on_plane(ray, {0, 0, 0}, {1, 0, 0});
   return wall_occlusion((ray.direction.z < 0 && floor.x > 0 ? floor.x : wall.z) / reach);
 }
 
@@ -100,9 +102,10 @@ TEST(Occlusion, CornersAreOccludedAsTheirWallsTell) {
   // The noise of 64 rays a pixel.
   EXPECT_LT(exact.rmse, 0.03);
   EXPECT_NEAR(exact.ratio, 1, 0.01);
-  // What the estimators are known to be off: points within r_max stand for rays up to it, so that SSAO
-  // misses a quarter next to a wall, and what lies beside the picture is missed by all.
-  const Judged most[] = {{0.09, 1.3}, {0.09, 0.75}, {0.06, 0.9}}, least[] = {{0, 1}, {0, 0.5}, {0, 0.65}};
+  // What the estimators are known to be off: points within r_max stand for rays up to it, so that
+  // SSAO misses a quarter next to a wall, and what lies beside the picture is missed by all.
+  const Judged most[] = {{0.09, 1.3}, {0.09, 0.75}, {0.06, 0.9}},
+               least[] = {{0, 1}, {0, 0.5}, {0, 0.65}};
   for (Estimator estimator : kEstimators) {
     engine::RenderRequest r = occluded(camera, 1, 8);
     r.occlusion.estimator = estimator;
@@ -118,8 +121,8 @@ TEST(Occlusion, CornersAreOccludedAsTheirWallsTell) {
 constexpr double kNearer = 0.7;
 
 TEST(Occlusion, OtherViewsShowWhatStandsBesideThePicture) {
-  // The wall stands next to what the camera sees of the floor. A sun from the other side shows it, as
-  // do a lamp with a cube of maps and a phantom camera.
+  // The wall stands next to what the camera sees of the floor. A sun from the other side shows it,
+  // as do a lamp with a cube of maps and a phantom camera.
   const gpu_scene::Camera camera = perspective({0.7, 0, 3}, {0.7, 0, 0}, 0.4, kSize, kSize);
   const TestScene s = corner();
   const Picture exact = render(s, traced(occluded(camera, 1), 64));
@@ -234,138 +237,6 @@ TEST(Occlusion, AWhiteFurnaceShowsVisibility) {
       EXPECT_LE(brightest, 1 + 1e-5);
       EXPECT_LT(darkest, 1 - 0.3 * strength);
     }
-}
-
-TEST(Occlusion, WithoutStrengthThePictureIsAsWithout) {
-  const gpu_scene::Camera camera = perspective({4, -1, 2.5}, {0.3, 0, 0.3}, 0.5, kSize, kSize);
-  TestScene s = corner();
-  s.world = world("vec3 evaluate_world(vec3 d) { return d * 0.5 + 0.5; }\n");
-  s.lights = {point({3, 0, 3}, 10)};
-  engine::RenderRequest r = occluded(camera, 1, 2);
-  r.occlusion.strength = 0;
-  r.occlusion.secondary_views = 2;
-  const Picture with = render(s, r);
-  EXPECT_TRUE(effect_of(with, "ambient_occlusion").runs);
-  r.passes.reset(size_t(Pass::kAo));
-  const Picture without = render(s, r);
-  EXPECT_FALSE(effect_of(without, "ambient_occlusion").runs);
-  EXPECT_TRUE(with[Pass::kCombined] == without[Pass::kCombined]);
-  r.occlusion.strength = 1;
-  EXPECT_GT(rmse(render(s, r)[Pass::kCombined], without[Pass::kCombined]), 0.02);
-}
-
-TEST(Occlusion, LampsCountAlikeInAnyOrder) {
-  const gpu_scene::Camera camera = perspective({0.7, 0, 3}, {0.7, 0, 0}, 0.4, kSize, kSize);
-  TestScene s = corner();
-  s.lights = {sun({-1, 0.25f, -1}, 1), point({3, 0, 3}, 10), spot({3, 1, 3}, {-1, 0, -1}, 10, 1.2f, 0),
-              point({1, 0, 4}, 10)};
-  for (Estimator estimator : kEstimators) {
-    engine::RenderRequest r = occluded(camera, 1);
-    r.occlusion.estimator = estimator;
-    r.occlusion.secondary_views = 3;
-    std::vector<float> first;
-    for (const auto& order : {std::array{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 3, 0, 2}}) {
-      TestScene shuffled = s;
-      for (size_t i = 0; i < order.size(); ++i) shuffled.lights[i] = s.lights[size_t(order[i])];
-      const std::vector<float> found = render(shuffled, r)[Pass::kAo];
-      if (first.empty()) first = found;
-      double worst = 0;
-      for (size_t i = 0; i < found.size(); ++i) worst = std::max<double>(worst, std::abs(found[i] - first[i]));
-      EXPECT_LE(worst, 1e-3) << int(estimator);
-    }
-  }
-}
-
-TEST(Occlusion, NoMoreViewsAreTakenThanAllowed) {
-  const gpu_scene::Camera camera = perspective({0.7, 0, 3}, {0.7, 0, 0}, 0.4, kSize, kSize);
-  TestScene s = corner();
-  for (int i = 0; i < 10; ++i) s.lights.push_back(point({1 + 0.25f * i, -2 + 0.5f * i, 2 + 0.125f * i}, 10));
-  for (int most = 0; most <= ambient_occlusion::kMostSecondaryViews; most += 2) {
-    engine::RenderRequest r = occluded(camera, 1);
-    r.occlusion.secondary_views = most;
-    const plan::Effect lamps = effect_of(render(s, r), "occlusion_lamp_views");
-    EXPECT_EQ(lamps.runs, most > 0);
-    if (most > 0) {
-      EXPECT_LE(std::stoi(lamps.reason), most) << lamps.reason;
-    }
-    if (most > 0 && most <= 4) {
-      EXPECT_EQ(std::stoi(lamps.reason), most) << "there are as many worth it";
-    }
-  }
-}
-
-TEST(Occlusion, ImportanceSamplingKeepsTheMean) {
-  const gpu_scene::Camera camera = perspective({4, -1, 2.5}, {0.3, 0, 0.3}, 0.5, kSize, kSize);
-  TestScene s = corner();
-  s.lights = {sun({-1, 0.25f, -1}, 1)};
-  for (Estimator estimator : {Estimator::kAlchemy, Estimator::kSsao}) {
-    engine::RenderRequest r = occluded(camera, 1, 32);
-    r.occlusion.estimator = estimator;
-    r.occlusion.secondary_views = 1;
-    std::vector<float> found[2];
-    for (int with : {0, 1}) {
-      r.occlusion.importance_sampling = with == 1;
-      found[with] = render(s, r)[Pass::kAo];
-    }
-    // Views of which few samples are taken weigh as much as with many, so what bias there is comes of
-    // weights and estimates of the same few samples.
-    EXPECT_NEAR(mean(found[1]), mean(found[0]), 1e-3) << int(estimator);
-  }
-}
-
-TEST(Occlusion, TheFilterSmoothsAreasAndKeepsEdges) {
-  // A shelf over a floor, seen from above; the floor beside it is occluded, the shelf is not.
-  TestScene s;
-  const Id white = s.add_material(lambert());
-  s.add_object(floor_at(0, 8), {white});
-  s.add_object(box({0, 0, 0.5f}, glm::vec3(0.5f)), {white});
-  const gpu_scene::Camera camera = perspective({0.3, -0.2, 5}, {0, 0, 0}, 0.35, kSize, kSize);
-  engine::RenderRequest r = occluded(camera, 1);
-  r.passes.set(size_t(Pass::kDepth));
-  r.occlusion.estimator = Estimator::kSsao;
-  const Picture rough = render(s, r);
-  r.occlusion.filter = Filter::kOn;
-  const Picture smooth = render(s, r);
-  const Picture exact = render(s, traced(r, 64));
-  Worst top;
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      if (smooth.value(Pass::kDepth, x, y) < 4.01) top.compare(smooth.value(Pass::kAo, x, y), 1, 1, x, y);
-  EXPECT_GT(top.count(), 50);
-  EXPECT_WORST_BELOW(top, 1e-3);
-  EXPECT_LT(rmse(smooth[Pass::kAo], exact[Pass::kAo]), 0.6 * rmse(rough[Pass::kAo], exact[Pass::kAo]));
-  EXPECT_NEAR(mean(smooth[Pass::kAo]), mean(rough[Pass::kAo]), 0.003);
-}
-
-TEST(Occlusion, DeepShadowsDarkenWhereLampsAreBlocked) {
-  // A card in the sun, so high over the floor that it occludes nothing.
-  TestScene s;
-  const Id white = s.add_material(lambert());
-  s.add_object(floor_at(0, 4), {white});
-  s.add_object(floor_at(2, 0.5f), {white});
-  s.world = constant_world(glm::vec3(1));
-  s.lights = {sun({0, 0, -1}, 1e-6f)};
-  const gpu_scene::Camera camera = perspective({0, -3, 1.5}, {0, 0, 0}, 0.9, kSize, kSize);
-  engine::RenderRequest r = occluded(camera, 0.25f);
-  const Picture without = render(s, r);
-  EXPECT_FALSE(effect_of(without, "deep_shadows").runs);
-  r.occlusion.deep_shadows = 1;
-  const Picture with = render(s, r);
-  EXPECT_TRUE(effect_of(with, "deep_shadows").runs);
-  EXPECT_TRUE(with[Pass::kAo] == without[Pass::kAo]) << "the AO pass is physics";
-  Worst lit, blocked;
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const glm::dvec3 p = on_plane(pixel_ray(camera, x, y), {0, 0, 0}, {0, 0, 1});
-      const double from_edge = std::max(std::abs(p.x), std::abs(p.y)) - 0.5;
-      if (from_edge > 0.3)
-        lit.compare(with.value(Pass::kCombined, x, y), without.value(Pass::kCombined, x, y), 1, x, y);
-      if (from_edge < -0.3) blocked.compare(with.value(Pass::kCombined, x, y), 0, 1, x, y);
-    }
-  EXPECT_GT(lit.count(), 100);
-  EXPECT_GT(blocked.count(), 5);
-  EXPECT_WORST_BELOW(lit, 0.0);
-  EXPECT_WORST_BELOW(blocked, 0.02);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 namespace panoptes::test {
 namespace {
 
-// In place of ambient_occlusion/view.glsl: what `recorded()` of the test says that the line of sight
-// through a point meets, r_max = 1.
+// In place of ambient_occlusion/view.glsl: what `recorded()` of the test says that the line of
+// sight through a point meets, r_max = 1.
 constexpr const char* kView = R"(
 struct LabRange { vec4 range; };
 const LabRange occlusion = LabRange(vec4(1.0, 1.0, 0.85, 0.02));
@@ -50,9 +50,10 @@ class OcclusionEstimators : public ::testing::Test {
   static void SetUpTestSuite() { context = std::make_unique<gl::Context>(); }
   static void TearDownTestSuite() { context.reset(); }
 
-  // What `vec4 lab(uint i)` of `main` gives for 0 .. count - 1, where estimator number `estimator` (3:
-  // obscurance) looks at what `recorded` tells.
-  std::vector<glm::vec4> run(int estimator, const char* recorded, const std::string& main, int count) {
+  // What `vec4 lab(uint i)` of `main` gives for 0 .. count - 1, where estimator number `estimator`
+  // (3: obscurance) looks at what `recorded` tells.
+  std::vector<glm::vec4> run(int estimator, const char* recorded, const std::string& main,
+                             int count) {
     gl::ProgramSource source;
     source.name = "occlusion lab";
     source.stages = {{GL_COMPUTE_SHADER, "lab/main.comp"}};
@@ -66,6 +67,7 @@ class OcclusionEstimators : public ::testing::Test {
                        {"lab/main.comp", includes + R"(
 layout(local_size_x = 64) in;
 layout(std430, binding = 2) writeonly buffer Results { vec4 results[]; };
+const Sums NOTHING = Sums(0.0, 0.0, 0.0, 0.0, vec3(0.0), 0.0);
 Place place(vec3 normal, uint pixel) {
   uint key = hash(pixel);
   return Place(vec3(0.0), normal, uvec3(key, hash(key + 1u), hash(key + 2u)));
@@ -77,7 +79,7 @@ void main() {
 }
 )"},
                        {"lab/body.glsl", main}};
-    source.defines = {"IMPORTANCE 0", fmt::format("HBAO_SLICES {}", ambient_occlusion::kHbaoSlices),
+    source.defines = {fmt::format("HBAO_SLICES {}", ambient_occlusion::kHbaoSlices),
                       fmt::format("HBAO_STEPS {}", ambient_occlusion::kHbaoSteps)};
     const gl::Buffer out(int64_t(count) * int64_t(sizeof(glm::vec4)));
     programs.get(source).use();
@@ -111,7 +113,8 @@ vec4 lab(uint i) {
   vec2 at = vec2(uvec2(i % 25u, i / 25u)) / 24.0;
   return vec4(opening(2.0 * HALF_PI * at.x, HALF_PI * (2.0 * at.y - 1.0)), 0.0);
 }
-)", (kSteps + 1) * (kSteps + 1));
+)",
+                                           (kSteps + 1) * (kSteps + 1));
   Worst worst;
   for (int y = 0; y <= kSteps; ++y)
     for (int x = 0; x <= kSteps; ++x) {
@@ -137,7 +140,8 @@ vec4 lab(uint i) {
   return i % 3u == 0u ? vec4(dot(x, x), dot(y, y), dot(x, y), 1.0) :
                         vec4(1.0, 1.0, dot(x, n), dot(cross(x, y), n));
 }
-)", 1024);
+)",
+                                           1024);
   for (const glm::vec4& f : found)
     ASSERT_LT(glm::distance(glm::dvec4(f), glm::dvec4(1, 1, 0, 1)), 4e-6);
 }
@@ -145,11 +149,12 @@ vec4 lab(uint i) {
 TEST_F(OcclusionEstimators, PointsFollowTheCosineAndFillTheHemisphere) {
   const std::vector<glm::vec4> found = run(1, kAllBlocked, R"(
 vec4 lab(uint i) {
-  Sums sums = no_samples();
+  Sums sums = NOTHING;
   estimate(place(vec3(0.0, 0.0, 1.0), 5u), Face(vec3(0.6, 0.0, 0.8), 0.0), i, 1u, sums);
   return vec4(looked_at, 0.0);
 }
-)", 4096);
+)",
+                                           4096);
   // The first samples of a pixel, and all: points of a sequence are spread more evenly than chance,
   // which would give 1.2 / sqrt(n), twice as often as not more than 0.83 / sqrt(n).
   for (const size_t n : {size_t(64), found.size()}) {
@@ -165,7 +170,8 @@ vec4 lab(uint i) {
     }
     for (const std::vector<double>& values : {volumes, sines, angles})
       EXPECT_LT(unevenness(values), 0.6 / std::sqrt(double(n))) << n;
-    EXPECT_LT(glm::distance(sum / double(n), glm::dvec3(0, 0, 2 / 3.0)), 0.5 / std::sqrt(double(n)));
+    EXPECT_LT(glm::distance(sum / double(n), glm::dvec3(0, 0, 2 / 3.0)),
+              0.5 / std::sqrt(double(n)));
   }
 }
 
@@ -174,22 +180,25 @@ TEST_F(OcclusionEstimators, ABlockedHemisphereIsClosedByTwoThirdsOfTheNormal) {
     const std::vector<glm::vec4> found = run(estimator, kAllBlocked, R"(
 vec4 lab(uint i) {
   vec3 normal = normalize(vec3(1.0, -2.0, 3.0));
-  Sums sums = no_samples();
+  Sums sums = NOTHING;
   Face face = Face(normalize(vec3(0.5, -1.0, 1.0)), 0.0);
   for (uint k = 0u; k < 64u; ++k) estimate(place(normal, i), face, 24u * k, 24u, sums);
   return vec4(sums.closed, sums.unknown) / sums.count;
 }
-)", 64);
+)",
+                                             64);
     glm::dvec4 mean(0);
     for (const glm::vec4& f : found) mean += glm::dvec4(f) / double(found.size());
     const glm::dvec3 due = 2 / 3.0 * glm::normalize(glm::dvec3(1, -2, 3));
     EXPECT_LT(glm::distance(glm::dvec3(mean), due), 2e-3) << estimator;
-    EXPECT_LT(mean.w, 1e-3) << "all but what lies next to the surface's plane is seen to be blocked";
+    EXPECT_LT(mean.w, 1e-3)
+        << "all but what lies next to the surface's plane is seen to be blocked";
   }
 }
 
-// Of points of the hemisphere, spread evenly over its volume, those behind a wall `k` away: their share,
-// and the mean of their directions' part towards the wall. By the midpoint rule on the unit disk.
+// Of points of the hemisphere, spread evenly over its volume, those behind a wall `k` away: their
+// share, and the mean of their directions' part towards the wall. By the midpoint rule on the unit
+// disk.
 glm::dvec2 points_behind_wall(double k) {
   constexpr int kCells = 2000;
   glm::dvec2 sum(0);
@@ -206,12 +215,13 @@ TEST_F(OcclusionEstimators, AWallOccludesWhatItsSegmentOfADiskTells) {
     const std::vector<glm::vec4> found = run(estimator, kCorner, R"(
 vec4 lab(uint i) {
   Face face = Face(normalize(vec3(1.0, 0.0, i < 640u ? 1.0 : 0.1)), 0.05 + 0.1 * float(i / 64u % 10u));
-  Sums sums = no_samples();
+  Sums sums = NOTHING;
   for (uint k = 0u; k < 64u; ++k)
     estimate(place(vec3(0.0, 0.0, 1.0), i), face, 24u * k, 24u, sums);
   return vec4(sums.occlusion, sums.closed) / sums.count;
 }
-)", 1280);
+)",
+                                             1280);
     for (int from : {0, 1}) {
       Worst occlusion, closed;
       double sum = 0, due_sum = 0;
@@ -229,15 +239,16 @@ vec4 lab(uint i) {
         due_sum += wall_occlusion(k);
       }
       // Points alone are known exactly. The other two are approximations by construction: Alchemy
-      // counts what is recorded before points that are open, too, and the more of it the more a view
-      // shows of the wall's height; steps towards the horizon miss what lies between them.
-      // Points that lie deeper in the wall than r_max, along the line of sight, are unknown: from aside
-      // some of those that the wall blocks do.
+      // counts what is recorded before points that are open, too, and the more of it the more a
+      // view shows of the wall's height; steps towards the horizon miss what lies between them.
+      // Points that lie deeper in the wall than r_max, along the line of sight, are unknown: from
+      // aside some of those that the wall blocks do.
       if (estimator == 1) {
         EXPECT_WORST_BELOW(occlusion, from == 0 ? 0.02 : 0.002);
         EXPECT_WORST_BELOW(closed, from == 0 ? 0.02 : 0.002);
       }
-      const glm::dvec2 range = estimator == 0 ? (from == 0 ? glm::dvec2(1.1, 1.5) : glm::dvec2(1.1, 2.5))
+      const glm::dvec2 range = estimator == 0
+                                   ? (from == 0 ? glm::dvec2(1.1, 1.5) : glm::dvec2(1.1, 2.5))
                                : estimator == 1 ? glm::dvec2(0.7, 0.8)
                                                 : glm::dvec2(0.8, 1);
       EXPECT_GT(sum / due_sum, range.x) << estimator << " from " << from;
@@ -252,12 +263,14 @@ TEST_F(OcclusionEstimators, AFloorAloneIsOpen) {
 vec4 lab(uint i) {
   float z = 0.02 + 0.97 * float(i) / 255.0, angle = 2.399963 * float(i);
   Face face = Face(vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z), 0.0);
-  Sums sums = no_samples();
+  Sums sums = NOTHING;
   estimate(place(vec3(0.0, 0.0, 1.0), i), face, 0u, 24u, sums);
   return vec4(sums.occlusion, sums.closed);
 }
-)", 256);
-    for (const glm::vec4& f : found) ASSERT_LT(glm::length(f), estimator == 2 ? 1e-4 : 1e-9) << estimator;
+)",
+                                             256);
+    for (const glm::vec4& f : found)
+      ASSERT_LT(glm::length(f), estimator == 2 ? 1e-4 : 1e-9) << estimator;
   }
 }
 
