@@ -67,7 +67,6 @@ class OcclusionEstimators : public ::testing::Test {
                        {"lab/main.comp", includes + R"(
 layout(local_size_x = 64) in;
 layout(std430, binding = 2) writeonly buffer Results { vec4 results[]; };
-const Sums NOTHING = Sums(0.0, 0.0, 0.0, 0.0, vec3(0.0), 0.0);
 Place place(vec3 normal, uint pixel) {
   uint key = hash(pixel);
   return Place(vec3(0.0), normal, uvec3(key, hash(key + 1u), hash(key + 2u)));
@@ -149,7 +148,7 @@ vec4 lab(uint i) {
 TEST_F(OcclusionEstimators, PointsFollowTheCosineAndFillTheHemisphere) {
   const std::vector<glm::vec4> found = run(1, kAllBlocked, R"(
 vec4 lab(uint i) {
-  Sums sums = NOTHING;
+  Sums sums = no_samples();
   estimate(place(vec3(0.0, 0.0, 1.0), 5u), Face(vec3(0.6, 0.0, 0.8), 0.0), i, 1u, sums);
   return vec4(looked_at, 0.0);
 }
@@ -180,7 +179,7 @@ TEST_F(OcclusionEstimators, ABlockedHemisphereIsClosedByTwoThirdsOfTheNormal) {
     const std::vector<glm::vec4> found = run(estimator, kAllBlocked, R"(
 vec4 lab(uint i) {
   vec3 normal = normalize(vec3(1.0, -2.0, 3.0));
-  Sums sums = NOTHING;
+  Sums sums = no_samples();
   Face face = Face(normalize(vec3(0.5, -1.0, 1.0)), 0.0);
   for (uint k = 0u; k < 64u; ++k) estimate(place(normal, i), face, 24u * k, 24u, sums);
   return vec4(sums.closed, sums.unknown) / sums.count;
@@ -215,7 +214,7 @@ TEST_F(OcclusionEstimators, AWallOccludesWhatItsSegmentOfADiskTells) {
     const std::vector<glm::vec4> found = run(estimator, kCorner, R"(
 vec4 lab(uint i) {
   Face face = Face(normalize(vec3(1.0, 0.0, i < 640u ? 1.0 : 0.1)), 0.05 + 0.1 * float(i / 64u % 10u));
-  Sums sums = NOTHING;
+  Sums sums = no_samples();
   for (uint k = 0u; k < 64u; ++k)
     estimate(place(vec3(0.0, 0.0, 1.0), i), face, 24u * k, 24u, sums);
   return vec4(sums.occlusion, sums.closed) / sums.count;
@@ -263,7 +262,7 @@ TEST_F(OcclusionEstimators, AFloorAloneIsOpen) {
 vec4 lab(uint i) {
   float z = 0.02 + 0.97 * float(i) / 255.0, angle = 2.399963 * float(i);
   Face face = Face(vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z), 0.0);
-  Sums sums = NOTHING;
+  Sums sums = no_samples();
   estimate(place(vec3(0.0, 0.0, 1.0), i), face, 0u, 24u, sums);
   return vec4(sums.occlusion, sums.closed);
 }
