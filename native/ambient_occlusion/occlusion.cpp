@@ -24,8 +24,6 @@ constexpr float kLeastContribution = 0.002f;
 constexpr float kLeastSine = 0.02f;
 // Pixels along a side of a work group of sample.comp.
 constexpr int kTile = 16;
-// Filter taps lie on every second pixel, so that nine of them reach over 17.
-constexpr int kFilterStep = 1;
 
 // b of (4.2), section 4.4.3.
 float distance_share(Estimator estimator) { return estimator == Estimator::kSsao ? 1.0f : 0.85f; }
@@ -287,7 +285,7 @@ void AmbientOcclusion::filter(const Sample& sample, const gl::Texture& target) {
   for (int axis = 0; axis < 2; ++axis) {
     passes[size_t(axis)].first->bind(0);
     passes[size_t(axis)].second->bind_image(0, GL_WRITE_ONLY);
-    glUniform2i(2, axis == 0 ? kFilterStep : 0, axis == 0 ? 0 : kFilterStep);
+    glUniform2i(2, axis == 0 ? 1 : 0, axis == 0 ? 0 : 1);
     sample.g_buffer.dispatch_surfaces();
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   }

@@ -191,7 +191,7 @@ void PhantomMaps::render(const std::vector<LightView>& views, int resolution,
                          gpu_scene::ViewBlock& view_block, bool keep) {
   if (maps_.resize(resolution, resolution, std::max(int(views.size()), 1))) keep = false;
   if (keep && views == drawn_) return;
-  gl::PassScope scope(timer, "occlusion_phantom_views");
+  gl::PassScope scope(timer, "occlusion_phantom_views_draw");
   for (size_t i = 0; i < views.size(); ++i)
     // Shadow faces have the numbers from 1 on.
     maps_.draw(int(i), views[i], texels(views[i], resolution), -1.0f - float(i), camera, scene,

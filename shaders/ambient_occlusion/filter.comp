@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler2D combined;
 layout(binding = 1) uniform sampler2D depths;
 layout(binding = 0, rgba16f) writeonly uniform image2D filtered;
-layout(location = 2) uniform ivec2 step_between;  // from tap to tap, pixels
+layout(location = 2) uniform ivec2 axis;  // from tap to tap, pixels
 layout(location = 3) uniform float reach;         // r_max, metres
 
 const int TAPS = 4;  // on each side
@@ -21,7 +21,7 @@ void main() {
   vec4 sum = texelFetch(combined, pixel, 0);
   float weights = 1.0;
   for (int k = -TAPS; k <= TAPS; ++k) {
-    ivec2 at = pixel + k * step_between;
+    ivec2 at = pixel + k * axis;
     bool there = k != 0 && all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, view.size.xy));
     at = clamp(at, ivec2(0), view.size.xy - 1);
     there = there && texelFetch(depths, at, 0).r > 0.0;

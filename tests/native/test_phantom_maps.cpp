@@ -84,7 +84,7 @@ class PhantomMap : public ::testing::Test {
     const std::vector<gl::PassTime> times = timer.times();
     timer.reset();
     return std::any_of(times.begin(), times.end(), [](const gl::PassTime& time) {
-      return time.name == "occlusion_phantom_views";
+      return time.name == "occlusion_phantom_views_draw";
     });
   }
 

@@ -17,7 +17,7 @@ from shots import Shots, our_scene
 LADDER = (1, 2, 3, 4, 5, 7, 9, 11, 13, 15)
 RESOLUTIONS = (64, 128, 256, 512, 1024)
 VIEWS = (1, 2, 3)
-OCCLUSION, DRAWING = ("ambient_occlusion", "occlusion_"), ("occlusion_phantom_views",)
+OCCLUSION, DRAWING = ("ambient_occlusion", "occlusion_"), ("occlusion_phantom_views_draw",)
 
 
 def by_turns(shots, options, distance, named):
