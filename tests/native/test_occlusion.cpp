@@ -37,7 +37,7 @@ TEST(Occlusion, WhatNothingStandsNearIsOpen) {
   plain.add_object(box(center, half), {white});
   plain.add_object(sphere({1.5f, 0.5f, 2.5f}, 0.75f, 24, false), {white});
   const scene::Light lamps[] = {sun({-1, 0.5f, -1}, 1), point({1.5f, 1, 1.5f}, 10),
-                                spot({2, 0, 3}, {-1, 0, -1}, 10, 1.2f, 0)};
+                                spot({1.5f, -2, 2}, {-1, 0.25f, -0.5f}, 10, 1.6f, 0)};
   for (const gpu_scene::Camera& camera :
        {perspective({0.5, -6, 2.5}, {0, 0, 1}, 0.8, kSize, kSize),
         perspective({0.5, -6, 0.25}, {0, 0, 1}, 0.8, kSize, kSize)})
@@ -166,6 +166,25 @@ TEST(Occlusion, LampsShowTheFarSideOfWhatTheCameraSees) {
     const double alone = rmse(render(s, r)[Pass::kAo], exact[Pass::kAo]);
     r.occlusion.secondary_views = 2;
     EXPECT_LT(rmse(render(s, r)[Pass::kAo], exact[Pass::kAo]), kNearer * alone) << int(estimator);
+  }
+}
+
+TEST(Occlusion, ALampAboveATableShowsThatItsTopStandsOverTheFloor) {
+  TestScene s;
+  const Id white = s.add_material(lambert());
+  s.add_object(floor_at(0, 6), {white});
+  s.add_object(box({0, 0, 0.75f}, {1, 1, 0.05f}), {white});
+  s.lights = {sun({0.3f, 0.2f, -1}, 1)};
+  const gpu_scene::Camera camera = perspective({0.5, -4, 1.2}, {0, 0, 0.3}, 0.6, kSize, kSize);
+  const Picture exact = render(s, traced(occluded(camera, 1), 64));
+  for (Estimator estimator : kEstimators) {
+    engine::RenderRequest r = occluded(camera, 1, 2);
+    r.occlusion.estimator = estimator;
+    const double alone = rmse(render(s, r)[Pass::kAo], exact[Pass::kAo]);
+    r.occlusion.secondary_views = 1;
+    // The floor below is hidden from the lamp, which counts less for it than where it sees the
+    // floor.
+    EXPECT_LT(rmse(render(s, r)[Pass::kAo], exact[Pass::kAo]), 0.8 * alone) << int(estimator);
   }
 }
 

@@ -213,15 +213,15 @@ TEST(OcclusionHardCases, ViewsThatTellNothingCountForNothing) {
       r.occlusion.phantom_cameras[0] = phantom;
       EXPECT_TRUE(twice(s, r, "blind phantom") == alone);
     }
-    // Below the floor and behind the wall. What hides a surface from a view is taken to stand over
-    // it as well, so these do harm: how much is bounded here. A sun below sees nothing but faces
-    // from behind.
+    // Below the floor and in the next room. They cannot know that what hides surfaces from them is
+    // only that, so they count little: unweighted they took errors from .05 to .08 to as much as
+    // .2.
     const std::vector<float> exact = render(traced(r, 64))[Pass::kAo];
     r.occlusion.phantom_camera_count = 0;
     for (const scene::Light& lamp :
          {point({2, 0, -2}, 10), point({-2, 0, 2}, 10), sun({0, 0, 1}, 1)}) {
       s.lights = {lamp};
-      EXPECT_LT(rmse(twice(s, r, "behind"), exact), 0.25)
+      EXPECT_LT(rmse(twice(s, r, "behind"), exact), 0.12)
           << int(estimator) << ", lamp " << int(lamp.type);
     }
   }
