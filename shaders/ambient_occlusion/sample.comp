@@ -46,9 +46,10 @@ float view_weight(Sums sums, float facing) {
 
 // What hides a surface from a view may stand over it, as a table's top does, or be the wall of the
 // lamp's own room: the view cannot tell, and takes it for an occluder. A quarter of the weight keeps
-// most of what is gained in the first case and of what is lost in the second.
+// most of what is gained in the first case and of what is lost in the second. What hides a surface from
+// a phantom view stands in the camera's own room.
 float trust(Place p, Face face) {
-#if CAMERA_VIEW || ESTIMATOR == OBSCURANCE
+#if CAMERA_VIEW || PHANTOM || ESTIMATOR == OBSCURANCE
   return 1.0;
 #else
   Look own = look(face, p.position, vec3(0.0));
