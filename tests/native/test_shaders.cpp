@@ -238,7 +238,8 @@ class Shaders : public ::testing::Test {
     };
     for (int bits = 0; bits < 256; ++bits) {
       with_film(film::PassSet().set(), true, bits);
-      with_film({}, false, bits);
+      // Without passes surfaces of one kind stand for the others.
+      if (bits % 16 == 0 || bits % 16 == 15) with_film({}, false, bits);
     }
     // Occlusion only meets the world's light, of all kinds of surfaces or of none.
     for (int bits : {0, 64, 79, 255})
