@@ -99,6 +99,9 @@ def use_panoptes(scene, render):
         import panoptes
         panoptes.register()
     scene.render.engine = "PANOPTES"
+    if not render["shadows"]:
+        # Surfaces alone are compared: neither do lamps cast shadows nor is the world's light occluded.
+        scene.panoptes.ambient_occlusion.strength = 0.0
     if render["samples"]:
         scene.panoptes.samples = render["samples"]
     if render["method"]:
