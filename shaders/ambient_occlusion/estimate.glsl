@@ -34,6 +34,12 @@ void frame_around(vec3 n, out vec3 x, out vec3 y) {
   y = vec3(b, s + n.y * n.y * a, -n.y);
 }
 
+// A direction over `n` by the cosine; its sine to the plane is sqrt(1 - u.x).
+vec3 cosine_direction(vec2 u, vec3 x, vec3 y, vec3 n) {
+  float angle = 6.28318530718 * u.y;
+  return sqrt(u.x) * (cos(angle) * x + sin(angle) * y) + sqrt(1.0 - u.x) * n;
+}
+
 // Sine of the elevation of what is recorded over the surface; at most 0 for the surface itself, its
 // curvature and rounding.
 float elevation(Look l, vec3 normal) {

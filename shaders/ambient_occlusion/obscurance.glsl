@@ -7,8 +7,7 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
   frame_around(p.normal, x, y);
   for (uint i = first; i < first + count; ++i) {
     vec3 u = sequence_point(p, i);
-    float radius = sqrt(u.x), angle = 6.28318530718 * u.y;
-    vec3 direction = radius * (cos(angle) * x + sin(angle) * y) + sqrt(1.0 - u.x) * p.normal;
+    vec3 direction = cosine_direction(u.xy, x, y, p.normal);
     Look l = look(face, p.position, direction * r_max());
     float height = max(sqrt(1.0 - u.x), 1.0e-3) * r_max();
     sums.occlusion += l.seen ? clamp(elevation(l, p.normal) * length(l.surface) / height, 0.0, 1.0) : 0.0;

@@ -12,8 +12,7 @@ void estimate(Place p, Face face, uint first, uint count, inout Sums sums) {
   frame_around(p.normal, x, y);
   for (uint i = first; i < first + count; ++i) {
     vec3 u = sequence_point(p, i);
-    float radius = sqrt(u.x), angle = 6.28318530718 * u.y;
-    vec3 direction = radius * (cos(angle) * x + sin(angle) * y) + sqrt(1.0 - u.x) * p.normal;
+    vec3 direction = cosine_direction(u.xy, x, y, p.normal);
     vec3 offset = direction * (pow(u.z, 1.0 / 3.0) * r_max());
     Look l = look(face, p.position, offset);
     float rise = elevation(l, p.normal);

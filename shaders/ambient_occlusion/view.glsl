@@ -1,5 +1,6 @@
 // What a view has recorded where it sees a point: the includer binds the view's depths.
 #include "ambient_occlusion/occlusion_shared.h"
+#include "rasterize/cube_face.glsl"
 
 layout(std140, binding = 1) uniform OcclusionBlock { OcclusionView occlusion; };
 #if CAMERA_VIEW
@@ -49,15 +50,6 @@ vec3 place_of(Face f, vec3 offset) {
 bool inside(Face f, vec3 place) {
   return all(lessThan(abs(place.xy), vec2(1.0))) && place.z > f.depth.z && f.layer >= 0.0;
 }
-
-#if CUBE
-uint cube_face(vec3 from) {
-  vec3 a = abs(from);
-  if (a.x >= a.y && a.x >= a.z) return from.x >= 0.0 ? 0u : 1u;
-  if (a.y >= a.z) return from.y >= 0.0 ? 2u : 3u;
-  return from.z >= 0.0 ? 4u : 5u;
-}
-#endif
 
 // The face by which the view sees the surface best. Points around it may need another one of a cube.
 Face main_face(vec3 position) {

@@ -9,6 +9,7 @@
 // edges are widened by the distance between receiver and blockers (Fernando 2005). Without it every
 // sample of the film sees the lamp from another of its points.
 #include "gpu_scene/lights_shared.h"
+#include "rasterize/cube_face.glsl"
 
 layout(std430, binding = 4) readonly buffer ShadowFaces { ShadowFace shadow_faces[]; };
 layout(binding = 13) uniform sampler2DArray shadow_maps;  // reversed depth
@@ -35,13 +36,6 @@ struct ShadowView {
 
 // How far a surface may rise from texel to texel, in texels, before its slope counts no further.
 const float STEEPEST = 256.0;
-
-uint cube_face(vec3 from_light) {
-  vec3 a = abs(from_light);
-  if (a.x >= a.y && a.x >= a.z) return from_light.x >= 0.0 ? 0u : 1u;
-  if (a.y >= a.z) return from_light.y >= 0.0 ? 2u : 3u;
-  return from_light.z >= 0.0 ? 4u : 5u;
-}
 
 // False where the face does not see the receiver.
 bool look_at(ShadowFace f, Receiver r, vec3 to_light, out ShadowView v) {
