@@ -100,7 +100,8 @@ void AmbientOcclusion::bind_view(const View& view, const Sample& sample, int lay
   block.place = {uint32_t(layer), uint32_t(view.faces.size()), uint32_t(stride), uint32_t(views)};
   std::copy_n(view.faces.begin(), std::min(view.faces.size(), std::size(block.faces)), block.faces);
   if (!block_) block_ = gl::Buffer(sizeof block);
-  block_.write(0, sizeof block, &block);
+  block_.write(0, int64_t(sizeof block - sizeof block.faces + view.faces.size() * sizeof block.faces[0]),
+               &block);
 
   programs_.get(sample_program(options)).use();
   sample.g_buffer.bind_surfaces();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <limits>
 
 namespace panoptes::engine {
 
@@ -169,7 +170,10 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   {
     std::lock_guard lock(mutex);
     gpu_scene_.update(scene);
-    const int samples = single(request) ? 1 : std::max(int(request.last_sample), 2);
+    // Ranges that are to be merged have the plan of a picture of many samples, whichever they are.
+    const int samples = request.pieces    ? std::numeric_limits<int>::max()
+                        : single(request) ? 1
+                                          : std::max(int(request.last_sample), 2);
     plan = plan::make_plan(scene.facts(), {samples, request.soft_shadows,
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes, request.debug_picture, paths,
