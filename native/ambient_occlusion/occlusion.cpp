@@ -304,8 +304,8 @@ void AmbientOcclusion::amend(plan::Effects& plan) const {
     if (effect.name == "occlusion_lamp_views" && lamp_views_) {
       effect.runs = !lamps_.empty();
       effect.reason = lamps_.empty() ? "no lamp's shadow map shows more than the camera"
-                                     : fmt::format("{} lamp{} show what the camera does not see",
-                                                   lamps_.size(), lamps_.size() > 1 ? "s" : "");
+                                     : fmt::format("{} lamp{} what the camera does not see",
+                                                   lamps_.size(), lamps_.size() > 1 ? "s show" : " shows");
     }
     if (effect.name == "occlusion_phantom_views" && phantom_views_ &&
         settings_.phantoms == Phantoms::kAuto && settings_.phantom_camera_count == 0) {
