@@ -8,8 +8,9 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 PICTURES = (
     ('occlusion_multiview', 'Occlusion', 'What ambient occlusion finds by all its views: white is open, black '
                                          'is closed'),
-    ('occlusion_single_view', "Occlusion, Camera Alone", 'The same by the camera alone. Where the two differ, '
-                                                         'other views see what hides from the camera'),
+    ('occlusion_single_view', "Occlusion, Camera Alone", 'The same by the camera alone, and never filtered. Where '
+                                                         'the two differ, other views see what hides from the '
+                                                         'camera'),
     ('occlusion_contribution', 'Occlusion by View', 'What the picture would lack without a view: red, green and '
                                                     'blue for the first three besides the camera, black where '
                                                     'the camera is enough'),

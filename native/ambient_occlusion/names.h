@@ -24,7 +24,7 @@ enum class Picture {
   kSamples,       // of all views, relative to the most there may be: blue few, red all
   kContribution,  // what the picture would lack without a view; red, green, blue: the first three others
   kBentNormals,   // .5 + .5 * normal, world space
-  kSingleView,    // visibility, by the camera alone
+  kSingleView,    // visibility, by the camera alone and without the filter
   kMultiview,     // visibility, by all views
 };
 constexpr std::array<std::string_view, 7> kPictureNames{

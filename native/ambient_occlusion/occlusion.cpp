@@ -217,25 +217,7 @@ void AmbientOcclusion::estimate(const Sample& sample) {
     gl::PassScope scope(timer_, kNames[int(view.kind)]);
     estimate_view(view, sample, k, options_for(view, false));
   }
-  if (deep_shadows_ && deep_lamps_.empty()) {
-    const float open[4] = {0, 0, 0, 1};
-    glClearTexImage(deep_.id(), 0, GL_RGBA, GL_FLOAT, open);
-  }
-  if (!deep_lamps_.empty()) {
-    gl::PassScope scope(timer_, "deep_shadows");
-    int layer = views_;
-    for (uint32_t lamp : deep_lamps_) {
-      const std::optional<View> view = lamp_view(*sample.lights, lamp);
-      if (!view) continue;
-      SampleOptions options = options_for(*view, false);
-      options.obscurance = true;
-      options.importance_sampling = options.bent_normals = false;
-      estimate_view(*view, sample, layer++, options);
-    }
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    combine(sample, views_, layer, false, deep_);
-    if (filter_) filter(sample, deep_);
-  }
+  if (deep_shadows_) estimate_deep_shadows(sample);
   {
     gl::PassScope scope(timer_, "ambient_occlusion_combine");
     combine(sample, 0, views_, bent_, combined_);
@@ -243,6 +225,27 @@ void AmbientOcclusion::estimate(const Sample& sample) {
   if (!filter_) return;
   gl::PassScope scope(timer_, "occlusion_filter");
   filter(sample, combined_);
+}
+
+void AmbientOcclusion::estimate_deep_shadows(const Sample& sample) {
+  gl::PassScope scope(timer_, "deep_shadows");
+  int layer = views_;
+  for (uint32_t lamp : deep_lamps_) {
+    const std::optional<View> view = lamp_view(*sample.lights, lamp);
+    if (!view) continue;
+    SampleOptions options = options_for(*view, false);
+    options.obscurance = true;
+    options.importance_sampling = options.bent_normals = false;
+    estimate_view(*view, sample, layer++, options);
+  }
+  if (layer == views_) {
+    // No map shows anything in this sample: nothing is darkened.
+    const float open[4] = {0, 0, 0, 1};
+    glClearTexImage(deep_.id(), 0, GL_RGBA, GL_FLOAT, open);
+    return;
+  }
+  combine(sample, views_, layer, false, deep_);
+  if (filter_) filter(sample, deep_);
 }
 
 void AmbientOcclusion::estimate_view(const View& view, const Sample& sample, int layer,

@@ -42,7 +42,6 @@ class AmbientOcclusion {
   void begin(const gpu_scene::Camera& camera, const Settings& settings, const plan::Effects& plan,
              uint32_t seed);
   bool runs() const { return runs_; }
-  bool bent_normals() const { return bent_; }
 
   // What a sample of the film sees. The lamps' maps hold the first batch of `lights`.
   struct Sample {
@@ -86,6 +85,7 @@ class AmbientOcclusion {
                      const SampleOptions& options);
   // Views `first` to before `last` into `target`.
   void combine(const Sample& sample, int first, int last, bool bent, const gl::Texture& target);
+  void estimate_deep_shadows(const Sample& sample);
   void filter(const Sample& sample, const gl::Texture& target);
 
   gl::ProgramCache& programs_;
