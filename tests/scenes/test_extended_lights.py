@@ -23,8 +23,9 @@ def diffuse_light(name, samples, cycles_samples):
 
 
 # Cycles has as many samples as keep its noise well below the bar; glowing things are noisy in it.
-# A penumbra is a sum of as many hard shadows as there are samples. Blocks right beside a bulb are as noisy in Cycles
-# as in our picture: brightness is the mean over all.
+# A penumbra is a sum of as many hard shadows as there are samples. Right beside a bulb a few bright samples of Cycles
+# move the mean over all blocks by more than the bar, and by other amounts each time that the scene is built: its order of
+# glowing triangles is not fixed. Brightness is the median of what blocks have of Cycles' light, which they do not move.
 @pytest.mark.parametrize("name, samples, cycles_samples, largest_error",
                          [("soft_lamps", 64, 128, 0.02), ("glow", 128, 1024, 0.05)])
 def test_converges_to_cycles(name, samples, cycles_samples, largest_error):
@@ -33,7 +34,7 @@ def test_converges_to_cycles(name, samples, cycles_samples, largest_error):
     scale = reference.mean()
     error = np.sqrt(np.mean((ours - reference) ** 2)) / scale
     noise = np.sqrt(np.mean((one - reference) ** 2)) / scale
-    brightness = ours.mean() / scale
+    brightness = np.median(ours.sum(axis=2) / reference.sum(axis=2))
     print(f"{name}: error {error:.4f}, Cycles' noise {noise:.4f}, brightness {brightness:.4f}")
     assert noise < largest_error
     assert error < largest_error
