@@ -30,17 +30,4 @@ enum class Picture {
 constexpr std::array<std::string_view, 7> kPictureNames{
     "none", "weights", "samples", "contribution", "bent_normals", "single_view", "multiview"};
 
-// The place of `name` in a list of names as an enumerator; E(-1) when it is not there.
-template <class E, size_t N>
-constexpr E find_name(const std::array<std::string_view, N>& names, std::string_view name) {
-  for (size_t i = 0; i < N; ++i)
-    if (names[i] == name) return E(i);
-  return E(-1);
-}
-
-template <class E, size_t N>
-constexpr bool known(const std::array<std::string_view, N>&, E value) {
-  return int(value) >= 0 && size_t(value) < N;
-}
-
 }  // namespace panoptes::ambient_occlusion

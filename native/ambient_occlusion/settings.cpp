@@ -1,20 +1,13 @@
 #include "ambient_occlusion/settings.h"
 
+#include "base/choices.h"
 #include "base/error.h"
-
-#include <fmt/ranges.h>
 
 #include <cmath>
 
 namespace panoptes::ambient_occlusion {
 
 namespace {
-
-template <class E, size_t N>
-void check_name(const std::array<std::string_view, N>& names, E value, const char* what) {
-  if (!known(names, value))
-    fail("there is no {} number {}: choose one of {}", what, int(value), fmt::join(names, ", "));
-}
 
 void check_range(int value, int least, int most, const char* what) {
   if (value < least || value > most)
@@ -24,10 +17,10 @@ void check_range(int value, int least, int most, const char* what) {
 }  // namespace
 
 void Settings::check() const {
-  check_name(kEstimatorNames, estimator, "estimator of ambient occlusion");
-  check_name(kPhantomsNames, phantoms, "mode of phantom views");
-  check_name(kFilterNames, filter, "mode of the occlusion filter");
-  check_name(kPictureNames, picture, "picture of ambient occlusion");
+  check_choice(kEstimatorNames, estimator, "estimator of ambient occlusion");
+  check_choice(kPhantomsNames, phantoms, "mode of phantom views");
+  check_choice(kFilterNames, filter, "mode of the occlusion filter");
+  check_choice(kPictureNames, picture, "picture of ambient occlusion");
   if (!(distance > 0) || !std::isfinite(distance))
     fail("a distance of {} m for ambient occlusion is out of range: choose more than 0", distance);
   if (!(strength >= 0 && strength <= 1) || !(deep_shadows >= 0 && deep_shadows <= 1))

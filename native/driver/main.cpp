@@ -1,12 +1,15 @@
 // Renders a scene snapshot without Blender: benchmarks, and checks on machines that have a GPU but
 // no Blender. Writes a PFM picture (linear, Combined or another pass) and the statistics.
 #include "base/error.h"
+#include "driver/cache_options.h"
 #include "driver/occlusion_options.h"
+#include "driver/options.h"
 #include "engine/engine.h"
 #include "engine/snapshot.h"
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -23,6 +26,7 @@ constexpr const char* kUsage =
     "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
     "                       [--method realtime|primitive] [--bounces N] [--shadow-maps]\n"
     "                       [--raster-primary] [--pass NAME] [--occlusion KEY=VALUE]...\n"
+    "                       [--cache KEY=VALUE]... [--specular-rays auto|off|on]\n"
     "                       [--structure auto|orthographic|cube|lists|bvh|view] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
@@ -34,7 +38,8 @@ struct Arguments {
   int bounces = -1;
   bool shadow_maps = false, raster_primary = false;
   panoptes::film::Pass pass = panoptes::film::Pass::kCombined;
-  std::vector<std::string> occlusion;
+  std::vector<std::string> occlusion, cache;
+  std::optional<panoptes::specular_rays::Mode> specular_rays;
   panoptes::engine::StructureSettings structure;
 };
 
@@ -69,6 +74,10 @@ Arguments parse(const std::vector<std::string>& words) {
       if (a.pass == panoptes::film::Pass::kCount || panoptes::film::info(a.pass).channels < 3)
         fail("'{}' is no pass of three channels: see the README for those that there are", words[i]);
     } else if (word == "--occlusion") a.occlusion.push_back(value());
+    else if (word == "--cache") a.cache.push_back(value());
+    else if (word == "--specular-rays")
+      a.specular_rays = panoptes::driver::named<panoptes::specular_rays::Mode>(
+          panoptes::specular_rays::kModeNames, value());
     else if (word == "--bounces") a.bounces = whole(word, value(), 0);
     else if (word == "--method") {
       const std::string& name = value();
@@ -133,12 +142,18 @@ void run(const Arguments& arguments) {
   request.passes.set(size_t(arguments.pass));
   for (const std::string& option : arguments.occlusion)
     panoptes::driver::set_occlusion(request.occlusion, option);
+  for (const std::string& option : arguments.cache)
+    panoptes::driver::set_cache(request.cache, option);
+  request.specular_rays.mode = arguments.specular_rays.value_or(request.specular_rays.mode);
   // One distance for both methods, as Blender's users have it.
   if (!arguments.occlusion.empty()) request.paths.ao_distance = request.occlusion.distance;
   request.method = arguments.method.value_or(request.method);
   request.paths.shadow_maps |= arguments.shadow_maps;
   request.paths.raster_primary |= arguments.raster_primary;
-  if (arguments.bounces >= 0) request.paths.bounces.total = arguments.bounces;
+  if (arguments.bounces >= 0) {
+    request.paths.bounces.total = arguments.bounces;
+    request.cache.bounces = std::min(arguments.bounces, panoptes::radiance_cache::kMostBounces);
+  }
   request.debug_picture = arguments.debug.value_or(request.debug_picture);
   if (arguments.structure != panoptes::engine::StructureSettings{})
     request.structure = arguments.structure;

@@ -178,7 +178,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes, request.debug_picture, paths,
                                            {request.paths, request.camera.lens.radius > 0},
-                                           request.occlusion});
+                                           request.occlusion, request.cache, request.viewport});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,

@@ -56,6 +56,8 @@ void RenderRequest::check() const {
   structure.check();
   paths.check();
   occlusion.check();
+  cache.check();
+  specular_rays.check();
 }
 
 std::string RenderStats::to_json() const {

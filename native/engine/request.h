@@ -7,7 +7,9 @@
 #include "gpu_scene/view.h"
 #include "path_tracer/settings.h"
 #include "plan/effect.h"
+#include "radiance_cache/settings.h"
 #include "ray_picture/kind.h"
+#include "specular_rays/settings.h"
 
 #include <cstdint>
 #include <optional>
@@ -31,6 +33,8 @@ struct RenderRequest {
   float exposure = 1.0f;        // multiplies light passes
   bool force_all_effects = false;
   bool live = false;            // Combined can be read while the frame renders
+  bool viewport = false;        // one of frames that follow each other: its light may keep a share of
+                                // the last one's
   // Keeps what merges with other ranges of samples. Each sample then looks the same in every range.
   bool pieces = false;
   int shadow_resolution = 2048; // texels a side, 16 .. 8192
@@ -43,7 +47,9 @@ struct RenderRequest {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;
   StructureSettings structure;  // for rays
   path_tracer::Settings paths;
-  ambient_occlusion::Settings occlusion;  // of Real-time
+  ambient_occlusion::Settings occlusion;  // these three: of Real-time
+  radiance_cache::Settings cache;
+  specular_rays::Settings specular_rays;
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;

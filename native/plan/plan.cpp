@@ -2,6 +2,7 @@
 
 #include "ambient_occlusion/decide.h"
 #include "film/decide.h"
+#include "radiance_cache/decide.h"
 #include "rasterize/decide.h"
 #include "ray_picture/decide.h"
 #include "realtime/decide.h"
@@ -28,6 +29,7 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     append(realtime::decide(facts));
     append(ambient_occlusion::decide(
         facts, {settings.occlusion, settings.passes[size_t(film::Pass::kAo)], settings.samples}));
+    append(radiance_cache::decide(facts, {settings.cache, settings.viewport}));
   }
   append(film::decide(settings.passes));
   if (settings.force_all_effects)

@@ -5,6 +5,7 @@
 #include "film/passes.h"
 #include "path_tracer/decide.h"
 #include "plan/effect.h"
+#include "radiance_cache/settings.h"
 #include "ray_picture/kind.h"
 #include "scene/scene.h"
 
@@ -19,7 +20,9 @@ struct PlanSettings {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
   bool path_tracing = false;       // Primitive tracing, not Real-time
   path_tracer::DecideSettings paths;
-  ambient_occlusion::Settings occlusion;  // of Real-time
+  ambient_occlusion::Settings occlusion;  // these two: of Real-time
+  radiance_cache::Settings cache;
+  bool viewport = false;                  // frames follow each other
 };
 
 Effects make_plan(const scene::Facts& facts, const PlanSettings& settings);

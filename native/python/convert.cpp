@@ -1,6 +1,6 @@
 #include "python/convert.h"
 
-#include <fmt/ranges.h>
+#include "base/choices.h"
 
 #include <set>
 
@@ -132,8 +132,8 @@ path_tracer::Settings path_settings(const py::dict& dict) {
 template <class E, size_t N>
 E named(const py::dict& dict, const char* key, const std::array<std::string_view, N>& names) {
   const auto name = get<std::string>(dict, key, std::string(names[0]));
-  const E found = ambient_occlusion::find_name<E>(names, name);
-  if (!ambient_occlusion::known(names, found))
+  const E found = find_choice<E>(names, name);
+  if (!known_choice(names, found))
     fail("'{}' of ambient occlusion cannot be '{}': choose one of {}", key, name,
          fmt::join(names, ", "));
   return found;

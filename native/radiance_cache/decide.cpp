@@ -1,0 +1,69 @@
+#include "radiance_cache/decide.h"
+
+#include <fmt/format.h>
+
+namespace panoptes::radiance_cache {
+
+namespace {
+
+plan::Effect effect(const char* name, bool runs, std::string reason, bool by_choice = false) {
+  return {name, runs, std::move(reason), by_choice};
+}
+
+}  // namespace
+
+plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) {
+  const Settings& s = settings.cache;
+  const bool surfaces = facts.triangles > 0;
+  const bool lamps = facts.lamp_count() > 0 || facts.emission;
+  const bool bounced = s.bounces > 0, light = facts.world || (lamps && bounced);
+  const bool picture = s.picture != Picture::kNone;
+  const bool runs = surfaces && s.enabled && (light || picture);
+  plan::Effects effects;
+  effects.push_back(effect("radiance_cache", runs,
+                           !surfaces    ? "there is no surface to light"
+                           : !s.enabled ? "switched off in the settings"
+                           : picture    ? "a picture of it was asked for"
+                           : light      ? "light reaches surfaces by way of others, and the world's past them"
+                           : lamps      ? "no bounces are allowed, and the world is black"
+                                        : "nothing shines",
+                           surfaces && !runs));
+  const char* idle = "there is no radiance cache";
+  const bool first = runs && lamps && bounced;
+  const bool rsm = s.first_bounce == FirstBounce::kRsm;
+  const char* no_first = !runs ? idle : !lamps ? "no lamp shines" : "no bounces are allowed";
+  effects.push_back(effect("cache_first_bounce", first && !rsm,
+                           !first ? no_first
+                           : rsm  ? "reflective shadow maps take its place"
+                                  : "lamps light surfaces that others see",
+                           !first || rsm));
+  effects.push_back(effect("cache_rsm", first && rsm,
+                           !first ? no_first
+                           : rsm  ? "switched on in the settings"
+                                  : "marched rays find the light of the first bounce",
+                           !first || !rsm));
+  const bool world = runs && facts.world;
+  effects.push_back(effect("cache_world", world,
+                           world   ? "the world shines in from where rays leave the scene"
+                           : !runs ? idle
+                                   : "the world is black"));
+  // The world's light has its first bounce here.
+  const int further = s.bounces - (facts.world ? 0 : 1);
+  const bool bounces = runs && light && further > 0;
+  effects.push_back(effect("cache_bounces", bounces,
+                           bounces   ? fmt::format("{} bounce{} between cells", further, further > 1 ? "s" : "")
+                           : !runs   ? idle
+                           : bounced ? "one bounce is all that is asked for"
+                                     : "no bounces are allowed",
+                           !bounces));
+  const bool blend = runs && settings.viewport && s.blend > 0;
+  effects.push_back(effect("cache_blend", blend,
+                           blend            ? "frames follow each other, and must not flicker"
+                           : !runs          ? idle
+                           : s.blend == 0   ? "switched off in the settings"
+                                            : "this frame stands alone",
+                           true));
+  return effects;
+}
+
+}  // namespace panoptes::radiance_cache

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "plan/effect.h"
+#include "radiance_cache/settings.h"
+#include "scene/scene.h"
+
+namespace panoptes::radiance_cache {
+
+struct DecideSettings {
+  Settings cache;
+  bool viewport = false;  // frames follow each other
+};
+
+// Whether light is gathered in a volume, from where, and how often it bounces.
+plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings);
+
+}  // namespace panoptes::radiance_cache

@@ -1,0 +1,57 @@
+// What an artist may choose of the radiance cache (thesis, chapter 5).
+#pragma once
+
+#include "radiance_cache/names.h"
+
+#include <glm/glm.hpp>
+
+#include <array>
+
+namespace panoptes::radiance_cache {
+
+constexpr int kMostRegions = 8;
+constexpr int kMostBounces = 8, kMostCascades = 3;
+
+// A box in which the cache's light is scaled.
+struct Region {
+  glm::dmat4 world_to_box{1.0};  // the box is [-1, 1]^3
+  float luminance = 1, chrominance = 1;
+};
+
+struct Settings {
+  bool enabled = true;
+  int bounces = 2;     // 0 .. kMostBounces; 0: the world's light alone
+  int resolution = 0;  // cells along the longest side, 4 .. 64; 0: chosen from scene and view
+  int voxels = 4;      // of the geometry volume along a cell's side, 2 .. 8 (section 5.5: 4)
+  // Cascades of the same resolution, each twice as wide as the one in it, the first about the
+  // camera; 1: the whole scene in one; 0: as many as scene and view call for.
+  int cascades = 0;
+  Encoding encoding = Encoding::kY3Co1Cg1;
+  // Of the cache's light, at least 0; 1: as it is (section 5.4).
+  float luminance = 1, chrominance = 1;
+  int region_count = 0;
+  std::array<Region, kMostRegions> regions;
+
+  FirstBounce first_bounce = FirstBounce::kSurfaces;
+  int directions = 64;   // marched from each cell, n_sec, 8 .. 512
+  int march_steps = 0;   // jittered samples along a ray, 0 .. 256; 0: every voxel that it passes
+  float voxel_fill = 0.75f;  // area of surface that makes a voxel solid, in faces of it, 0 .. 1
+  Occupancy occupancy = Occupancy::kAuto;
+  int depth_stride = 4;  // pixels between those that mark cells as seen, 1 .. 64
+  bool dilate = false;   // neighbours of occupied cells hold light too, as the thesis needs it
+
+  // Of reflective shadow maps.
+  int rsm_samples = 200;     // a lamp and cell, 1 .. 4096
+  int rsm_resolution = 128;  // texels a side, 16 .. 1024
+  float rsm_spread = 0.8f;   // s of (5.3), above 0, at most 1
+  bool rsm_mixed = true;     // half of the samples from the whole map, by the balance heuristic
+
+  // Share of the frame before in the viewport, 0 .. .98, where light did not change.
+  float blend = 0.8f;
+  Picture picture = Picture::kNone;
+
+  // Throws Error with a sentence when a value is out of range.
+  void check() const;
+};
+
+}  // namespace panoptes::radiance_cache
