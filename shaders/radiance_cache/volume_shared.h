@@ -12,7 +12,8 @@ struct CacheVolume {
   vec4 low;     // xyz: lowest corner, m, relative to the origin of positions; w: a cell's side, m
   ivec4 cells;  // xyz: cells along each axis; w: voxels along a cell's side
   ivec4 first;  // x: words of a row of voxels along x, 32 voxels each; y: the first word of this
-                // volume; z: its first cell, in the numbers of all volumes' cells
+                // volume; z: its first cell, in the numbers of all volumes' cells; w: cells along z
+                // of the volumes before it
 };
 SHARED_ASSERT_SIZE(CacheVolume, 48)
 
@@ -20,7 +21,7 @@ SHARED_ASSERT_SIZE(CacheVolume, 48)
 
 struct CacheVolumes {
   CacheVolume volumes[MOST_CASCADES];
-  ivec4 count;  // x: volumes; y: cells of all; z: solid voxels of all
+  ivec4 count;  // x: volumes; y: cells of all; z: solid voxels of all; w: cells along z of all
 };
 SHARED_ASSERT_SIZE(CacheVolumes, 48 * MOST_CASCADES + 16)
 

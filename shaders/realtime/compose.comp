@@ -4,7 +4,7 @@
 #include "rasterize/g_buffer.glsl"
 #include "base/albedo.glsl"
 #include "realtime/brdf.glsl"
-#include "realtime/spherical_harmonics.glsl"
+#include "base/spherical_harmonics.glsl"
 #include "film/film.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
