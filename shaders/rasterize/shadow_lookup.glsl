@@ -10,17 +10,10 @@
 // sample of the film sees the lamp from another of its points.
 #include "gpu_scene/lights_shared.h"
 #include "rasterize/cube_face.glsl"
+#include "rasterize/receiver.glsl"
 
 layout(std430, binding = 4) readonly buffer ShadowFaces { ShadowFace shadow_faces[]; };
 layout(binding = 13) uniform sampler2DArray shadow_maps;  // reversed depth
-
-// The surface that receives light, relative to the camera.
-struct Receiver {
-  vec3 position;
-  vec3 geometric_normal, smooth_normal;  // unit, on the viewer's side
-  float bulge;                           // Hit::bulge
-  float random;                          // 0..1, turns the pattern of taps
-};
 
 // The receiver as one face of a lamp's map sees it.
 struct ShadowView {
