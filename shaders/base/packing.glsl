@@ -1,5 +1,5 @@
-// Unit vectors in 32 bits (octahedral map, 2 x 16 bits; the largest error is .0037 degrees) and the
-// integer hash behind every per-pixel random number.
+// Unit vectors in 32 bits (octahedral map, 2 x 16 bits; the largest error is .0037 degrees), colours
+// in 32 bits, and the integer hash behind every per-pixel random number.
 
 vec2 octahedral_from_unit(vec3 n) {
   n /= abs(n.x) + abs(n.y) + abs(n.z);
@@ -15,6 +15,21 @@ vec3 unpack_unit(uint word) {
   float fold = max(-n.z, 0.0);
   n.xy += vec2(n.x >= 0.0 ? -fold : fold, n.y >= 0.0 ? -fold : fold);
   return normalize(n);
+}
+
+// A colour that is not negative: eight bits each and an exponent, so of any size; off by at most
+// 1/510 of its largest part.
+uint pack_color(vec3 c) {
+  c = max(c, vec3(0.0));
+  float largest = max(c.r, max(c.g, c.b));
+  if (!(largest >= 1.0e-36)) return 0u;
+  int exponent = clamp(int(floor(log2(largest * (256.0 / 255.5)))) + 1, -119, 120);
+  uvec3 parts = uvec3(min(c * exp2(float(8 - exponent)) + 0.5, vec3(255.0)));
+  return parts.r | parts.g << 8 | parts.b << 16 | uint(exponent + 127) << 24;
+}
+
+vec3 unpack_color(uint word) {
+  return vec3(uvec3(word, word >> 8, word >> 16) & 255u) * exp2(float(int(word >> 24) - 135));
 }
 
 // PCG's permutation on one word (O'Neill 2014; as a hash: Jarzynski and Olano 2020).

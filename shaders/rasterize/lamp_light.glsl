@@ -9,14 +9,13 @@
 
 layout(std430, binding = 3) readonly buffer Lights { Light lights[]; };
 
-// Irradiance from lamp `k` on a surface at the receiver's place that is square to it, W/m2. `to_light`
-// is unit; only the receiver's position matters where the lamp casts no shadow.
-vec3 lamp_light(uint k, Receiver receiver, out vec3 to_light) {
-  Light light = lights[k];
+// Irradiance from a lamp on a surface at `position` that is square to it, W/m2, if nothing stands
+// between. `to_light` is unit.
+vec3 unshadowed_light(Light light, vec3 position, out vec3 to_light) {
   to_light = -light.axis.xyz;
   vec3 irradiance = light.power.xyz;
   if (light.type != LIGHT_SUN) {
-    vec3 d = light.position.xyz - receiver.position;
+    vec3 d = light.position.xyz - position;
     float squared = max(dot(d, d), 1.0e-20);
     to_light = d * inversesqrt(squared);
     float least = light.position.w * light.position.w;
@@ -28,7 +27,7 @@ vec3 lamp_light(uint k, Receiver receiver, out vec3 to_light) {
       irradiance /= squared + least;
     // Points with a radius are disks that face whatever they light.
     if (light.type == LIGHT_POINT) {
-      vec3 to_center = light.center.xyz - receiver.position;
+      vec3 to_center = light.center.xyz - position;
       float squared_center = dot(to_center, to_center);
       vec3 facing = squared_center > 0.0 ? to_center * inversesqrt(squared_center) : to_light;
       irradiance *= max(dot(facing, to_light), 0.0);
@@ -37,7 +36,14 @@ vec3 lamp_light(uint k, Receiver receiver, out vec3 to_light) {
     if (light.type == LIGHT_AREA) irradiance *= area_falloff(light.cone.xy, cosine);
   }
   // Zero-length directions and absurd energies must not become NaN.
-  irradiance = clamp(irradiance, vec3(-1.0e30), vec3(1.0e30));
+  return clamp(irradiance, vec3(-1.0e30), vec3(1.0e30));
+}
+
+// The same from lamp `k` past what stands between; only the receiver's position matters where the
+// lamp casts no shadow.
+vec3 lamp_light(uint k, Receiver receiver, out vec3 to_light) {
+  Light light = lights[k];
+  vec3 irradiance = unshadowed_light(light, receiver.position, to_light);
 #if SHADOWS
   if (light.shadow != NO_SHADOW) irradiance *= shadow(light, receiver, to_light);
 #endif
