@@ -16,17 +16,18 @@ plan::Effect effect(const char* name, bool runs, const char* reason, bool by_cho
 plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) {
   const Settings& s = settings.occlusion;
   const bool surfaces = facts.triangles > 0, picture = s.picture != Picture::kNone;
-  const bool light = facts.world && s.strength > 0;
+  const bool ambient = facts.world || settings.cached_light;
+  const bool light = ambient && s.strength > 0;
   const bool runs = surfaces && (light || settings.pass || picture);
   plan::Effects effects;
   effects.push_back(effect("ambient_occlusion", runs,
                            !surfaces       ? "there is no surface to darken"
                            : picture       ? "a picture of it was asked for"
                            : settings.pass ? "the AO pass is asked for"
-                           : light         ? "surfaces stand in each other's way to the world's light"
-                           : facts.world   ? "its strength is 0"
-                                           : "the world is black and no AO pass is asked for",
-                           surfaces && facts.world && !runs));
+                           : light         ? "surfaces stand in the way of light from all around"
+                           : ambient       ? "its strength is 0"
+                                           : "no light comes from all around, and no AO pass is asked for",
+                           surfaces && ambient && !runs));
   const char* idle = "no ambient occlusion is looked for";
   const bool maps = facts.shadow_lamp_count() > 0;
   const bool lamps = runs && maps && s.secondary_views > 0;
@@ -46,10 +47,10 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                            off));
   const bool bent = runs && (light || s.picture == Picture::kBentNormals);
   effects.push_back(effect("bent_normals", bent,
-                           bent    ? "the world's light comes from where it is open"
+                           bent    ? "light from all around comes from where it is open"
                            : !runs ? idle
                                    : "no light is looked up by them",
-                           runs && facts.world));
+                           runs && ambient));
   const bool many = settings.samples >= kManySamples;
   const bool filter = runs && (s.filter == Filter::kOn || (s.filter == Filter::kAuto && !many));
   effects.push_back(effect("occlusion_filter", filter,

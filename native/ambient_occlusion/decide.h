@@ -8,8 +8,9 @@ namespace panoptes::ambient_occlusion {
 
 struct DecideSettings {
   Settings occlusion;
-  bool pass = false;  // the AO pass is asked for
-  int samples = 1;    // of the picture
+  bool cached_light = false;  // the radiance cache runs, whose light it darkens too
+  bool pass = false;          // the AO pass is asked for
+  int samples = 1;            // of the picture
 };
 
 // Which occlusion is looked for, by which views, and what is made of it. Views are the plan's up to

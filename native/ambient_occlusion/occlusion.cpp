@@ -59,13 +59,22 @@ void AmbientOcclusion::begin(const gpu_scene::Camera& camera, const Settings& se
   lamp_views_ = runs_ && plan::runs(plan, "occlusion_lamp_views");
   deep_shadows_ = runs_ && plan::runs(plan, "deep_shadows");
   phantom_views_ = runs_ && plan::runs(plan, "occlusion_phantom_views");
+  allocate();
+}
+
+void AmbientOcclusion::release() {
+  runs_ = bent_ = filter_ = lamp_views_ = deep_shadows_ = phantom_views_ = false;
+  allocate();
+}
+
+void AmbientOcclusion::allocate() {
   decided_ = false;
   lamps_.clear();
   deep_lamps_.clear();
   phantoms_ = false;
   const auto image = [&](int layers) {
     return gl::TextureOptions{GLenum(layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D), GL_RGBA16F,
-                              camera.width, camera.height, std::max(layers, 1), 1};
+                              camera_.width, camera_.height, std::max(layers, 1), 1};
   };
   want(combined_, runs_, image(0));
   want(filtered_, filter_, image(0));

@@ -41,6 +41,8 @@ class AmbientOcclusion {
   // Prepares for a frame: allocates what the plan runs and releases what it does not.
   void begin(const gpu_scene::Camera& camera, const Settings& settings, const plan::Effects& plan,
              uint32_t seed);
+  // What begin() does for a plan that runs none of it.
+  void release();
   bool runs() const { return runs_; }
 
   // What a sample of the film sees. The lamps' maps hold the first batch of `lights`.
@@ -74,6 +76,7 @@ class AmbientOcclusion {
   void amend(plan::Effects& plan) const;
 
  private:
+  void allocate();
   std::vector<View> views_of(const Sample& sample);
   void draw_phantoms(const Sample& sample);
   void bind_view(const View& view, const Sample& sample, int layer, int views, int stride,

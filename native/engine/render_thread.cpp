@@ -100,7 +100,11 @@ void RenderThread::publish(Job& job, const film::PassSet& passes) {
 
 void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effects& plan,
                                   scene::Scene& scene) {
-  traced_.release();
+  const bool triangles = plan::runs(plan, "radiance_cache");
+  if (triangles)
+    traced_.update(scene, gpu_scene_, programs_, timer_);
+  else
+    traced_.release();
   ray_picture_.release();
   path_tracer_.release();
   realtime::Settings settings;
@@ -109,6 +113,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
   settings.transparent_film = request.transparent_film;
   settings.filter_width = request.filter_width;
   settings.occlusion = request.occlusion;
+  settings.cache = request.cache;
   const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
   gpu_scene_.check_programs(
       [&](const gpu_scene::GpuMaterial& material) {
@@ -118,7 +123,8 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
         programs_.get(realtime::background_program(world));
       });
   // Samples that come after others are part of a picture of many, even if only one is asked for.
-  realtime_.begin(request.camera, plan, settings, single(request), scene, gpu_scene_);
+  realtime_.begin(request.camera, plan, settings, single(request), scene, gpu_scene_,
+                  triangles ? &traced_.triangles() : nullptr);
 }
 
 void RenderThread::begin_paths(const RenderRequest& request, const plan::Effects& plan,

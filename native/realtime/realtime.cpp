@@ -15,6 +15,9 @@ namespace {
 // Where a single threshold has to do: Blender's own for its depth pass.
 constexpr float kCutAlpha = 0.5f;
 
+// Where programs of the frame look up the radiance cache.
+constexpr int kCacheUnit = 13, kCacheBlock = 2;
+
 // Dimensions of the sample sequences: the pixel's, that of glowing surfaces, then two a lamp.
 constexpr uint32_t kPixelDimension = 0, kEmitterDimension = 1, kLampDimension = 2;
 
@@ -58,7 +61,11 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
                     fmt::format("WORLD_LIGHT {}", int(options.world_light)),
                     fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film)),
                     fmt::format("OCCLUSION {}", int(options.occlusion)),
-                    fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows))};
+                    fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows)),
+                    fmt::format("PASS_OCCLUSION {}", int(options.pass_occlusion)),
+                    fmt::format("RADIANCE_CACHE {}", int(options.cache.has_value())),
+                    fmt::format("AMBIENT {}", int(options.cache || options.world_light))};
+  if (options.cache) options.cache->add_defines(source);
   options.surfaces.add_defines(source);
   film.add_defines(source);
   return source;
@@ -80,16 +87,9 @@ gl::ProgramSource background_program(const gpu_scene::GpuShading& world) {
   return source;
 }
 
-gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world) {
-  gl::ProgramSource source = background_program(world);
-  source.name = "world light";
-  source.stages = {{GL_COMPUTE_SHADER, "realtime/world_project.comp"}};
-  return source;
-}
-
 void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
                      const Settings& settings, bool single, const scene::Scene& scene,
-                     const gpu_scene::GpuScene& gpu) {
+                     const gpu_scene::GpuScene& gpu, const tracing::TriangleList* triangles) {
   camera_ = camera;
   if (settings.seed != settings_.seed) shadow_revision_ = -1;  // emitters have other points
   settings_ = settings;
@@ -118,7 +118,6 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   want(glossy_light_, lamps_ && surfaces_.glossy, width, height);
   want(environment_, background_, width, height);
   if (!shadows_) shadow_maps_.release();
-  occlusion_.begin(camera, settings.occlusion, plan, settings.seed);
   if (!emissive_light_) {
     emitters_.clear();
     emitter_revision_ = -1;
@@ -135,38 +134,28 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
         },
         single);
   }
-  if (world_light_ && world_revision_ != gpu.world_revision()) {
+  if (world_light_) {
     gl::PassScope scope(timer_, "world_light");
-    project_world(scene.world(), gpu);
-    world_revision_ = gpu.world_revision();
+    world_.update(scene.world(), gpu, programs_);
   }
+  if (triangles)
+    cache_.begin({camera, plan, settings.cache, settings.seed, scene, gpu, *triangles, view_block_, world_});
+  else
+    cache_.release();
+  begin_occlusion();
 }
 
-void Realtime::project_world(const scene::World& world, const gpu_scene::GpuScene& gpu) {
-  std::array<glm::vec4, 9> coefficients{};
-  if (world.constant || !gpu.world()) {
-    // Only the first harmonic, 1 / sqrt(4 pi), has a mean: its coefficient is radiance * sqrt(4 pi).
-    coefficients[0] = glm::vec4(world.constant.value_or(glm::vec3(0)) * 3.5449077f, 0);
-  } else {
-    // As many directions as the world's images have texels, within what a frame can bear.
-    const unsigned width = unsigned(std::clamp(gpu.world_image_width(), 256, 2048));
-    const unsigned height = width / 2, each = 64, local = 64;
-    const unsigned groups = (width * height + each * local - 1) / (each * local);
-    gl::Buffer sums(int64_t(groups) * 9 * 16);
-    programs_.get(world_project_program(*gpu.world())).use();
-    gpu.bind_shading(*gpu.world());
-    glUniform2ui(1, width, height);
-    glUniform1ui(2, each);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, sums.id());
-    glDispatchCompute(groups, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    std::vector<glm::vec4> partial(size_t(groups) * 9);
-    sums.read(0, int64_t(partial.size()) * 16, partial.data());
-    std::array<glm::dvec4, 9> total{};
-    for (size_t i = 0; i < partial.size(); ++i) total[i % 9] += glm::dvec4(partial[i]);
-    for (size_t k = 0; k < 9; ++k) coefficients[k] = glm::vec4(total[k]);
-  }
-  store(world_block_, coefficients.data(), sizeof coefficients);
+void Realtime::begin_occlusion() {
+  ambient_occlusion::Settings contact = settings_.occlusion;
+  // Cells know what stands farther away.
+  if (cache_.runs()) contact.distance = std::min(contact.distance, float(cache_.cell()));
+  const bool picture = contact.picture != ambient_occlusion::Picture::kNone;
+  const bool pass = runs(plan_, "pass_ao") && contact.distance < settings_.occlusion.distance;
+  occlusion_.begin(camera_, picture ? settings_.occlusion : contact, plan_, settings_.seed);
+  if (pass && !picture)
+    pass_occlusion_.begin(camera_, settings_.occlusion, plan_, settings_.seed);
+  else
+    pass_occlusion_.release();
 }
 
 glm::dvec2 Realtime::sample_jitter(uint32_t index) const {
@@ -190,7 +179,7 @@ shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
 void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
                              const gpu_scene::GpuScene& gpu, film::Film& film,
                              const std::atomic<bool>& cancelled) {
-  if (index == first && first > 0 && (cascades_ || occlusion_.undecided()))
+  if (index == first && first > 0 && (cascades_ || undecided() || cache_.runs()))
     look_at_first_sample(sharing, gpu, cancelled);
   const shared::View view = sample_view(index, sharing);
   if (index == first && depth_) {
@@ -208,10 +197,13 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
+  if (cache_.runs() && index == 0) cache_.begin_lamps();
   if (lamps_)
     add_lamps(index, view, gpu, cancelled);
   else
     find_occlusion(index, view, nullptr, gpu, cancelled);
+  if (cache_.runs() && index == 0) cache_.gather();
+  stop_if(cancelled);
 
   if (background_) {
     gl::PassScope scope(timer_, "world_background");
@@ -227,7 +219,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   if (settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs())
     show_picture(film);
   else
-    compose(film);
+    compose(glm::vec3(view.world_origin), film);
 }
 
 void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
@@ -239,15 +231,41 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (cascades_) find_cascades(view);
-  if (!occlusion_.undecided()) return;
-  rasterize::LightSet set;
-  if (shadows_) {
-    set = place(0, view, gpu);
-    if (!set.batches.empty()) draw_shadow_maps(set, set.batches.front(), view, gpu, false);
-    shadow_revision_ = -1;  // these are of another sample than the next
+  if (!undecided() && !cache_.runs()) return;
+  const rasterize::LightSet set = lamps_ ? place(0, view, gpu) : rasterize::LightSet{};
+  store_lights(set);
+  shadow_revision_ = -1;  // these maps are of another sample than the next
+  cache_.begin_lamps();
+  if (!shadows_ || set.batches.empty()) choose_views(0, view, nullptr, gpu);
+  for (const rasterize::LightBatch& batch : set.batches) {
+    if (shadows_) draw_shadow_maps(set, batch, view, gpu, false);
     stop_if(cancelled);
+    if (shadows_ && &batch == &set.batches.front()) choose_views(0, view, &set, gpu);
+    if (!cache_.runs()) return;
+    light_cache(batch, view);
   }
-  occlusion_.choose(occlusion_sample(0, view, shadows_ ? &set : nullptr, gpu));
+  cache_.gather();
+}
+
+bool Realtime::undecided() const {
+  return occlusion_.undecided() || pass_occlusion_.undecided();
+}
+
+void Realtime::choose_views(uint32_t index, const shared::View& view,
+                            const rasterize::LightSet* lights, const gpu_scene::GpuScene& gpu) {
+  const auto sample = occlusion_sample(index, view, lights, gpu);
+  for (ambient_occlusion::AmbientOcclusion* occlusion : {&occlusion_, &pass_occlusion_})
+    if (occlusion->undecided()) occlusion->choose(sample);
+}
+
+void Realtime::light_cache(const rasterize::LightBatch& batch, const shared::View& view) {
+  cache_.add_lamps({.origin = glm::dvec3(glm::vec3(view.world_origin)),
+                    .shadows = shadows_,
+                    .first = batch.first_light,
+                    .count = batch.light_count,
+                    .lights = lights_buffer_,
+                    .faces = faces_buffer_,
+                    .bind_maps = [this](int unit) { shadow_maps_.bind(unit); }});
 }
 
 ambient_occlusion::AmbientOcclusion::Sample Realtime::occlusion_sample(
@@ -267,12 +285,14 @@ ambient_occlusion::AmbientOcclusion::Sample Realtime::occlusion_sample(
 void Realtime::find_occlusion(uint32_t index, const shared::View& view,
                               const rasterize::LightSet* lights, const gpu_scene::GpuScene& gpu,
                               const std::atomic<bool>& cancelled) {
-  if (!occlusion_.runs()) return;
+  if (undecided()) choose_views(index, view, lights, gpu);
+  stop_if(cancelled);
   const auto sample = occlusion_sample(index, view, lights, gpu);
-  if (occlusion_.undecided()) occlusion_.choose(sample);
-  stop_if(cancelled);
-  occlusion_.estimate(sample);
-  stop_if(cancelled);
+  for (ambient_occlusion::AmbientOcclusion* occlusion : {&occlusion_, &pass_occlusion_}) {
+    if (!occlusion->runs()) continue;
+    occlusion->estimate(sample);
+    stop_if(cancelled);
+  }
 }
 
 void Realtime::show_picture(film::Film& film) {
@@ -285,10 +305,11 @@ void Realtime::show_picture(film::Film& film) {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void Realtime::compose(film::Film& film) {
+void Realtime::compose(const glm::vec3& origin, film::Film& film) {
   gl::PassScope scope(timer_, "compose");
-  const ComposeOptions options{lamps_, background_, world_light_, settings_.transparent_film,
-                               occlusion_.runs(), deep_shadows_, surfaces_};
+  ComposeOptions options{lamps_, background_, world_light_, settings_.transparent_film,
+                         occlusion_.runs(), deep_shadows_, pass_occlusion_.runs(), {}, surfaces_};
+  if (cache_.runs()) options.cache = cache_.look_up(kCacheUnit, kCacheBlock);
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();
@@ -304,9 +325,12 @@ void Realtime::compose(film::Film& film) {
       glUniform1f(3, settings_.occlusion.deep_shadows);
     }
   }
-  if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
+  if (pass_occlusion_.runs()) pass_occlusion_.combined().bind(6);
+  if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_.harmonics().id());
+  if (cache_.runs()) cache_.bind(*options.cache, glm::dvec3(origin));
   film.bind();
   dispatch_pixels();
+  glBindSampler(kCacheUnit, 0);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
@@ -361,13 +385,17 @@ rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
        .layers = rasterize::ShadowMaps::layer_limit(settings_.shadows, device_)});
 }
 
-void Realtime::add_lamps(uint32_t index, const shared::View& view,
-                         const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled) {
-  const rasterize::LightSet set = place(index, view, gpu);
+void Realtime::store_lights(const rasterize::LightSet& set) {
   std::vector<shared::Light> lights;
   for (const rasterize::PlacedLight& placed : set.lights) lights.push_back(placed.light);
   store(lights_buffer_, lights.data(), lights.size() * sizeof(shared::Light));
   store(faces_buffer_, set.faces.data(), set.faces.size() * sizeof(shared::ShadowFace));
+}
+
+void Realtime::add_lamps(uint32_t index, const shared::View& view,
+                         const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled) {
+  const rasterize::LightSet set = place(index, view, gpu);
+  store_lights(set);
   clear(diffuse_light_);
   if (surfaces_.glossy) clear(glossy_light_);
 
@@ -383,6 +411,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     stop_if(cancelled);
     if (&batch == &set.batches.front())
       find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
+    if (cache_.runs() && index == 0) light_cache(batch, view);
     gl::PassScope scope(timer_, "direct_light");
     programs_.get(direct_light_program({shadows_, filtered_, surfaces_})).use();
     g_buffer_.bind_bins();

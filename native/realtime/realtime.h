@@ -1,6 +1,5 @@
-// Integrator 1: composes direct light and the world's light, as far as it is not occluded nearby, into
-// a frame, sample by sample. Until the radiance cache joins it, light that has left a first surface is
-// missing, and glass and mirrors see the blurred world.
+// Integrator 1: composes direct light, light that the radiance cache knows of, and what occludes it
+// nearby, into a frame, sample by sample.
 #pragma once
 
 #include "ambient_occlusion/occlusion.h"
@@ -13,20 +12,24 @@
 #include "gpu_scene/view.h"
 #include "gpu_scene/view_block.h"
 #include "plan/effect.h"
+#include "radiance_cache/radiance_cache.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/shadow_maps.h"
 #include "rasterize/sun_cascades.h"
 #include "scene/scene.h"
+#include "tracing/triangle_list.h"
 
 #include <atomic>
 #include <functional>
+#include <optional>
 
 namespace panoptes::realtime {
 
 struct Settings {
   rasterize::ShadowSettings shadows;
   ambient_occlusion::Settings occlusion;
+  radiance_cache::Settings cache;
   uint32_t seed = 0;
   bool transparent_film = false;  // the world behind the scene is not part of Combined
   float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
@@ -40,23 +43,26 @@ struct LightOptions {
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
   bool lamps = false, background = false, world_light = false, transparent_film = false;
-  bool occlusion = false, deep_shadows = false;
+  bool occlusion = false, deep_shadows = false, pass_occlusion = false;
+  std::optional<radiance_cache::LookUpOptions> cache;
   rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
 gl::ProgramSource depth_program(const film::Film& film);
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world);
-gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world);
 
 class Realtime {
  public:
   Realtime(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
-      : device_(device), programs_(programs), timer_(timer), occlusion_(programs, timer) {}
+      : device_(device), programs_(programs), timer_(timer), occlusion_(programs, timer),
+        pass_occlusion_(programs, timer), cache_(programs, timer) {}
 
   // Prepares for a frame: allocates what the plan runs and releases what it does not. `single` says
-  // that the frame has one sample only.
+  // that the frame has one sample only. `triangles` are those of the scene if the plan runs the radiance
+  // cache; null otherwise.
   void begin(const gpu_scene::Camera& camera, const plan::Effects& plan, const Settings& settings,
-             bool single, const scene::Scene& scene, const gpu_scene::GpuScene& gpu);
+             bool single, const scene::Scene& scene, const gpu_scene::GpuScene& gpu,
+             const tracing::TriangleList* triangles);
 
   // Adds sample `index` of a frame that begins with sample `first` to the film; `sharing` samples
   // share a pixel's footprint. Throws Cancelled when `cancelled` says so.
@@ -70,7 +76,6 @@ class Realtime {
  private:
   void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);
   void dispatch_pixels() const;
-  void project_world(const scene::World& world, const gpu_scene::GpuScene& gpu);
   // Where sample `index` looks through the pixels, about their centres; what the camera sees there.
   glm::dvec2 sample_jitter(uint32_t index) const;
   shared::View sample_view(uint32_t index, uint32_t sharing) const;
@@ -89,8 +94,14 @@ class Realtime {
   // While the maps of the first batch of `lights` (none: no lamps) are there.
   void find_occlusion(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
                       const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
+  void light_cache(const rasterize::LightBatch& batch, const shared::View& view);
+  void begin_occlusion();
+  bool undecided() const;
+  void choose_views(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
+                    const gpu_scene::GpuScene& gpu);
+  void store_lights(const rasterize::LightSet& set);
   void show_picture(film::Film& film);
-  void compose(film::Film& film);
+  void compose(const glm::vec3& origin, film::Film& film);
   void add_lamps(uint32_t index, const shared::View& view,
                  const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
 
@@ -113,13 +124,16 @@ class Realtime {
   rasterize::EmitterLights emitters_;
   int64_t emitter_revision_ = -1;
   rasterize::ShadowMaps shadow_maps_;
-  ambient_occlusion::AmbientOcclusion occlusion_;
+  ambient_occlusion::AmbientOcclusion occlusion_;  // of light
+  // Of the AO pass, where that reaches farther than a cell of the cache.
+  ambient_occlusion::AmbientOcclusion pass_occlusion_;
+  radiance_cache::WorldLight world_;
+  radiance_cache::RadianceCache cache_;
   std::vector<scene::Bounds> sun_cascades_;
   int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
   int shadow_resolution_ = 0;
   gl::Texture diffuse_light_, glossy_light_, environment_;
-  gl::Buffer lights_buffer_, faces_buffer_, world_block_;
-  int64_t world_revision_ = -1;
+  gl::Buffer lights_buffer_, faces_buffer_;
 };
 
 }  // namespace panoptes::realtime

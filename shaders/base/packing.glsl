@@ -18,8 +18,8 @@ vec3 unpack_unit(uint word) {
 }
 
 // A colour that is not negative: eight bits each and an exponent, so of any size; off by at most
-// 1/510 of its largest part.
-uint pack_color(vec3 c) {
+// 1/256 of its largest part.
+uint pack_light(vec3 c) {
   c = max(c, vec3(0.0));
   float largest = max(c.r, max(c.g, c.b));
   if (!(largest >= 1.0e-36)) return 0u;
@@ -28,7 +28,7 @@ uint pack_color(vec3 c) {
   return parts.r | parts.g << 8 | parts.b << 16 | uint(exponent + 127) << 24;
 }
 
-vec3 unpack_color(uint word) {
+vec3 unpack_light(uint word) {
   return vec3(uvec3(word, word >> 8, word >> 16) & 255u) * exp2(float(int(word >> 24) - 135));
 }
 

@@ -4,7 +4,7 @@
 #include "rasterize/g_buffer.glsl"
 #include "base/albedo.glsl"
 #include "realtime/brdf.glsl"
-#include "base/spherical_harmonics.glsl"
+#include "realtime/ambient.glsl"
 #include "film/film.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -24,25 +24,15 @@ layout(binding = 3) uniform sampler2D environment;
 #if OCCLUSION
 layout(binding = 4) uniform sampler2D occlusion;  // bent normal, visibility
 layout(location = 2) uniform float strength;
+#if PASS_OCCLUSION
+layout(binding = 6) uniform sampler2D pass_occlusion;  // of the AO pass, which reaches farther
+#endif
 #if DEEP_SHADOWS
 layout(binding = 5) uniform sampler2D deep;  // w: visibility
 layout(location = 3) uniform float deep_strength;
 #endif
 #endif
-#if WORLD_LIGHT
-// Coefficients of the world's radiance.
-layout(std140, binding = 1) uniform WorldBlock { vec4 world[9]; };
-
-// Irradiance on a plane that faces `n`, divided by pi: what a white diffuse surface sends back.
-vec3 world_diffuse(vec3 n) {
-  const float band[3] = float[3](1.0, 2.0 / 3.0, 0.25);
-  float basis[9] = spherical_harmonics(n);
-  vec3 sum = vec3(0.0);
-  for (int k = 0; k < 9; ++k)
-    sum += world[k].rgb * basis[k] * band[k == 0 ? 0 : (k < 4 ? 1 : 2)];
-  return max(sum, vec3(0.0));
-}
-
+#if AMBIENT
 #if OCCLUSION
 // Share of reflected light that comes past what occludes the surface (Lagarde and de Rousiers 2014).
 float specular_visibility(float visible, float roughness, float nv) {
@@ -71,7 +61,9 @@ void main() {
 #if OCCLUSION
   vec4 occluded = texelFetch(occlusion, pixel, 0);
 #endif
-#if WORLD_LIGHT
+  vec3 diffuse_bounced = vec3(0.0), glossy_bounced = vec3(0.0);
+  vec3 transmitted = vec3(0.0), transmitted_bounced = vec3(0.0);
+#if AMBIENT
   float nv = max(dot(g.normal, v), 0.0);
   vec3 open = g.normal;
 #if OCCLUSION
@@ -83,25 +75,35 @@ void main() {
   float size = length(open);
   open = size > 1.0e-3 ? open / size : g.normal;
 #endif
-  vec3 world_over = visible * world_diffuse(open);
-  diffuse += g.diffuse * diffuse_albedo(g.diffuse_roughness, nv) * world_over;
-  // Reflected and refracted light of the world from its blurred radiance, until rays are traced.
-#if GLOSSY
-  glossy += environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
-            world_diffuse(reflect(-v, g.normal)) * specular_visibility(visible, g.roughness, nv);
-#endif
+  Ambient around = ambient_diffuse(g.position, g.geometric_normal, open);
+  vec3 sent = visible * g.diffuse * diffuse_albedo(g.diffuse_roughness, nv);
 #if LAYERS
-  diffuse += g.sheen * sheen_albedo(g.sheen_roughness, nv) * world_over;
+  sent += visible * g.sheen * sheen_albedo(g.sheen_roughness, nv);
+#endif
+  diffuse += sent * around.world;
+  diffuse_bounced += sent * around.bounced;
+  // Reflected and refracted light from blurred radiance, where no ray is traced.
 #if GLOSSY
-  glossy += environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
-                                    abs(g.coat_roughness), max(dot(g.coat_normal, v), 0.0)) *
-            world_diffuse(reflect(-v, g.coat_normal)) *
-            specular_visibility(visible, abs(g.coat_roughness), nv);
+  Ambient mirrored = ambient_radiance(g.position, g.geometric_normal, reflect(-v, g.normal), g.roughness);
+  vec3 reflected = environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
+                   specular_visibility(visible, g.roughness, nv);
+  glossy += reflected * mirrored.world;
+  glossy_bounced += reflected * mirrored.bounced;
+#if LAYERS
+  float coat_nv = max(dot(g.coat_normal, v), 0.0), coat_roughness = abs(g.coat_roughness);
+  mirrored = ambient_radiance(g.position, g.geometric_normal, reflect(-v, g.coat_normal), coat_roughness);
+  reflected = environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
+                                      coat_roughness, coat_nv) *
+              specular_visibility(visible, coat_roughness, nv);
+  glossy += reflected * mirrored.world;
+  glossy_bounced += reflected * mirrored.bounced;
 #endif
 #endif
-  vec3 transmitted = g.transmission * world_diffuse(-v);
-#else
-  vec3 transmitted = vec3(0.0);
+#if TRANSMISSION
+  Ambient behind = ambient_radiance(g.position, -g.geometric_normal, -v, g.transmission_roughness);
+  transmitted = g.transmission * behind.world;
+  transmitted_bounced = g.transmission * behind.bounced;
+#endif
 #endif
 #if EMISSION
   emitted = texelFetch(emission, pixel, 0).rgb;
@@ -113,13 +115,16 @@ void main() {
     diffuse = vec3(0.0);
     glossy = vec3(0.0);
     transmitted = vec3(0.0);
+    diffuse_bounced = glossy_bounced = transmitted_bounced = vec3(0.0);
     emitted = vec3(0.0);
     g.diffuse = vec3(0.0);
     g.sheen = vec3(0.0);
     g.specular = vec3(0.0);
+    g.transmission = vec3(0.0);
     g.normal = vec3(0.0);
   }
-  vec3 combined = diffuse + glossy + transmitted + emitted;
+  vec3 combined = diffuse + glossy + transmitted + emitted + diffuse_bounced + glossy_bounced +
+                  transmitted_bounced;
 #if TRANSPARENT_FILM
   float coverage = covered ? 1.0 : 0.0;
 #else
@@ -136,6 +141,9 @@ void main() {
 #ifdef FILM_DIFFDIR
   film_add(FILM_DIFFDIR, pixel, vec4(diffuse, 0.0));
 #endif
+#ifdef FILM_DIFFIND
+  film_add(FILM_DIFFIND, pixel, vec4(diffuse_bounced, 0.0));
+#endif
 #ifdef FILM_GLOSSCOL
   film_add(FILM_GLOSSCOL, pixel,
            vec4(vec3(any(greaterThan(g.specular, vec3(0.0))) ? 1.0 : 0.0), 0.0));
@@ -143,11 +151,28 @@ void main() {
 #ifdef FILM_GLOSSDIR
   film_add(FILM_GLOSSDIR, pixel, vec4(glossy, 0.0));
 #endif
+#ifdef FILM_GLOSSIND
+  film_add(FILM_GLOSSIND, pixel, vec4(glossy_bounced, 0.0));
+#endif
+#ifdef FILM_TRANSCOL
+  film_add(FILM_TRANSCOL, pixel, vec4(vec3(any(greaterThan(g.transmission, vec3(0.0))) ? 1.0 : 0.0), 0.0));
+#endif
+#ifdef FILM_TRANSDIR
+  film_add(FILM_TRANSDIR, pixel, vec4(transmitted, 0.0));
+#endif
+#ifdef FILM_TRANSIND
+  film_add(FILM_TRANSIND, pixel, vec4(transmitted_bounced, 0.0));
+#endif
 #ifdef FILM_EMIT
   film_add(FILM_EMIT, pixel, vec4(emitted, 0.0));
 #endif
 #if OCCLUSION && defined(FILM_AO)
-  film_add(FILM_AO, pixel, vec4(vec3(covered ? occluded.w : 0.0), 0.0));
+#if PASS_OCCLUSION
+  float around_all = texelFetch(pass_occlusion, pixel, 0).w;
+#else
+  float around_all = occluded.w;
+#endif
+  film_add(FILM_AO, pixel, vec4(vec3(covered ? around_all : 0.0), 0.0));
 #endif
 #ifdef FILM_ENV
   film_add(FILM_ENV, pixel, vec4(background, 0.0));

@@ -95,7 +95,7 @@ TEST(ProgramText, LineDirectivesNameFileAndLine) {
 TEST(ProgramText, EveryShaderOfTheSourcesMapsItsLines) {
   for (const char* name :
        {"rasterize/surfaces.comp", "rasterize/raster.vert", "rasterize/raster.frag",
-        "realtime/direct_light.comp", "realtime/compose.comp", "realtime/world_project.comp",
+        "realtime/direct_light.comp", "realtime/compose.comp", "radiance_cache/world_radiance.comp",
         "realtime/background.comp", "rasterize/bin_offsets.comp"}) {
     ProgramSource s;
     s.snippets["generated/material.glsl"] = "// one\n// two\n";

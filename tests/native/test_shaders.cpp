@@ -230,12 +230,35 @@ class Shaders : public ::testing::Test {
     // Passes only add stores; each alone, none and all stand for the rest.
     film::Film film;
     const auto with_film = [&](const film::PassSet& passes, bool moments, int bits,
-                               bool occlusion = false, bool deep_shadows = false) {
+                               bool occlusion = false, bool deep_shadows = false,
+                               std::optional<radiance_cache::LookUpOptions> cache = {}) {
       film.start(4, 4, passes, {.moments = moments});
-      add(realtime::compose_program({bool(bits & 16), bool(bits & 32), bool(bits & 64),
-                                     bool(bits & 128), occlusion, deep_shadows, surfaces(bits)},
+      add(realtime::compose_program({.lamps = bool(bits & 16),
+                                     .background = bool(bits & 32),
+                                     .world_light = bool(bits & 64),
+                                     .transparent_film = bool(bits & 128),
+                                     .occlusion = occlusion,
+                                     .deep_shadows = deep_shadows,
+                                     .pass_occlusion = deep_shadows && cache,
+                                     .cache = cache,
+                                     .surfaces = surfaces(bits)},
                                     film));
     };
+    for (int encoding = 0; encoding < 6; ++encoding)
+      for (bool split : {false, true}) {
+        const radiance_cache::LookUpOptions cache{radiance_cache::Encoding(encoding), split, 13, 2};
+        for (int bits : {0, 15, 80, 127}) with_film(film::PassSet().set(), true, bits, split, split, cache);
+        add(radiance_cache::bounce_program(cache, split, true));
+        for (bool world : {false, true})
+          for (bool bounced : {false, true})
+            add(radiance_cache::gather_program({cache.encoding, split, world, bounced}));
+      }
+    add(radiance_cache::bounce_program({}, true, false));
+    for (bool either : {false, true}) {
+      add(radiance_cache::list_cells_program(either));
+      add(radiance_cache::march_program(either ? 12 : 0));
+      add(radiance_cache::light_surfels_program(either));
+    }
     for (int bits = 0; bits < 256; ++bits) {
       with_film(film::PassSet().set(), true, bits);
       // Without passes surfaces of one kind stand for the others.
@@ -305,7 +328,7 @@ class Shaders : public ::testing::Test {
       world.code = code;
       world.textures.resize(size_t(images));
       add(realtime::background_program(world));
-      add(realtime::world_project_program(world));
+      add(radiance_cache::world_radiance_program(world));
       add(path_tracer::world_map_program(world));
       for (bool rich : {false, true}) {
         add(path_tracer::miss_program(&world, path_options(0, rich)));

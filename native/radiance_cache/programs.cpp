@@ -1,0 +1,103 @@
+#include "radiance_cache/bindings.h"
+#include "radiance_cache/radiance_cache.h"
+
+#include <fmt/format.h>
+
+namespace panoptes::radiance_cache {
+
+namespace {
+
+gl::ProgramSource compute(const char* name, const char* file) {
+  gl::ProgramSource source;
+  source.name = name;
+  source.stages = {{GL_COMPUTE_SHADER, file}};
+  return source;
+}
+
+// Coefficients of luminance (or of each colour) and of a chrominance.
+struct Terms {
+  bool rgb;
+  int luminance, chrominance;
+};
+
+constexpr Terms terms(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::kY3Co1Cg1: return {false, 9, 1};
+    case Encoding::kY3Co2Cg2: return {false, 9, 4};
+    case Encoding::kY3Co3Cg3: return {false, 9, 9};
+    case Encoding::kRgb3: return {true, 9, 9};
+    case Encoding::kY2Co2Cg2: return {false, 4, 4};
+    case Encoding::kRgb2: return {true, 4, 4};
+  }
+  return {};
+}
+
+void add_encoding(gl::ProgramSource& source, Encoding encoding) {
+  const Terms t = terms(encoding);
+  source.defines.push_back(fmt::format("RGB {}", int(t.rgb)));
+  source.defines.push_back(fmt::format("LUMINANCE_TERMS {}", t.luminance));
+  source.defines.push_back(fmt::format("CHROMINANCE_TERMS {}", t.chrominance));
+}
+
+// Where the geometry volume is bound, for the cache's own programs.
+void add_volume(gl::ProgramSource& source) {
+  source.defines.push_back(fmt::format("VOLUMES_BLOCK {}", kVolumesBlock));
+  source.defines.push_back(fmt::format("VOLUME_WORDS_UNIT {}", kWordsUnit));
+  source.defines.push_back(fmt::format("VOLUME_SURFELS_UNIT {}", kSurfelsUnit));
+}
+
+}  // namespace
+
+int cell_texels(Encoding encoding) {
+  const Terms t = terms(encoding);
+  return (t.luminance + 2 * t.chrominance + 4) / 4;
+}
+
+void LookUpOptions::add_defines(gl::ProgramSource& source) const {
+  add_encoding(source, encoding);
+  source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(split)));
+  source.defines.push_back(fmt::format("CACHE_UNIT {}", unit));
+  source.defines.push_back(fmt::format("CACHE_BLOCK {}", block));
+}
+
+gl::ProgramSource list_cells_program(bool dilate) {
+  gl::ProgramSource source = compute("cells that hold light", "radiance_cache/list_cells.comp");
+  source.defines = {fmt::format("DILATE {}", int(dilate))};
+  add_volume(source);
+  return source;
+}
+
+gl::ProgramSource march_program(int steps) {
+  gl::ProgramSource source = compute("rays of cells", "radiance_cache/march.comp");
+  source.defines = {fmt::format("MARCH_STEPS {}", steps)};
+  add_volume(source);
+  return source;
+}
+
+gl::ProgramSource gather_program(const GatherOptions& options) {
+  gl::ProgramSource source = compute("light of cells", "radiance_cache/gather.comp");
+  add_encoding(source, options.encoding);
+  source.defines.push_back(fmt::format("CACHE_BLOCK {}", kCellsBlock));
+  source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(options.split)));
+  source.defines.push_back(fmt::format("WORLD {}", int(options.world)));
+  source.defines.push_back(fmt::format("BOUNCED {}", int(options.bounced)));
+  return source;
+}
+
+gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache) {
+  gl::ProgramSource source = compute("light of surfels", "radiance_cache/bounce.comp");
+  add_volume(source);
+  if (cache) options.add_defines(source);
+  source.defines.push_back(fmt::format("LAMPS {}", int(lamps)));
+  source.defines.push_back(fmt::format("CACHE_LIGHT {}", int(cache)));
+  return source;
+}
+
+gl::ProgramSource light_surfels_program(bool shadows) {
+  gl::ProgramSource source = compute("lamps on surfels", "radiance_cache/light_surfels.comp");
+  source.defines = {fmt::format("SHADOWS {}", int(shadows)), "FILTERED_PENUMBRAE 0"};
+  add_volume(source);
+  return source;
+}
+
+}  // namespace panoptes::radiance_cache

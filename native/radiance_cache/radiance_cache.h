@@ -1,0 +1,121 @@
+// The radiance cache: light that has left a first surface, and the world's light past what stands in
+// its way, on a lattice of cells (thesis, chapter 5).
+//
+// Once a frame, surfels of the geometry volume are lit by the lamps through their shadow maps; rays
+// that were marched from the cells bring what surfels send on, and the world's light where they leave
+// the scene; and surfels are lit by the cells for the next bounce. What rays meet is kept while
+// geometry rests. Nothing here depends on the camera but where the volumes lie.
+#pragma once
+
+#include "gl/context.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+#include "gpu_scene/gpu_scene.h"
+#include "gpu_scene/view.h"
+#include "gpu_scene/view_block.h"
+#include "plan/effect.h"
+#include "radiance_cache/geometry_volume.h"
+#include "radiance_cache/settings.h"
+#include "radiance_cache/world_light.h"
+#include "scene/scene.h"
+#include "tracing/triangle_list.h"
+
+#include <glm/glm.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace panoptes::radiance_cache {
+
+// What look-ups compile for.
+struct LookUpOptions {
+  Encoding encoding = Encoding::kY3Co1Cg1;
+  bool split = false;  // world and bounced light are told apart
+  int unit = 0;        // texture unit of the cells
+  int block = 0;       // binding of the uniform block
+  void add_defines(gl::ProgramSource& source) const;
+};
+
+// RGBA texels that a cell takes.
+int cell_texels(Encoding encoding);
+
+class RadianceCache {
+ public:
+  RadianceCache(gl::ProgramCache& programs, gl::PassTimer& timer)
+      : programs_(programs), timer_(timer) {}
+
+  struct Frame {
+    const gpu_scene::Camera& camera;
+    const plan::Effects& plan;
+    const Settings& settings;
+    uint32_t seed = 0;
+    const scene::Scene& scene;
+    const gpu_scene::GpuScene& gpu;
+    const tracing::TriangleList& triangles;  // of that scene
+    gpu_scene::ViewBlock& view_block;        // overwritten
+    WorldLight& world;                       // up to date
+  };
+  // Prepares for a frame: what depends on geometry alone. Releases everything if the plan does not run it.
+  void begin(const Frame& frame);
+  void release();
+  bool runs() const { return runs_; }
+
+  // Lamps light the surfels batch by batch: light() once before them all, then for each batch
+  // `lamps` binds it to the program that it is called with. Positions of lamps are relative to `origin`.
+  struct Lamps {
+    glm::dvec3 origin;
+    bool shadows = false;
+    uint32_t first = 0, count = 0;
+    const gl::Buffer& lights;
+    const gl::Buffer& faces;
+    std::function<void(int unit)> bind_maps;
+  };
+  void begin_lamps();
+  void add_lamps(const Lamps& lamps);
+  // Makes the cells' light.
+  void gather();
+
+  // The side of the finest cells, m: what is smaller than that, look-ups do not know of.
+  double cell() const { return grids_.empty() ? 0 : grids_.front().cell; }
+  // For look-ups about points relative to `origin`, by the program in use.
+  LookUpOptions look_up(int unit, int block) const;
+  void bind(const LookUpOptions& options, const glm::dvec3& origin);
+
+ private:
+  void list_cells();
+  void march();
+  void bounce(bool cache);
+  void gather_rays(bool bounced);
+  void write_block(gl::Buffer& block, const glm::dvec3& origin) const;
+  void bind_lattice(int location) const;
+  void bind_volume() const;
+
+  gl::ProgramCache& programs_;
+  gl::PassTimer& timer_;
+  bool runs_ = false, split_ = false, world_light_ = false, lamps_ = false;
+  int bounces_ = 0;
+  Settings settings_;
+  uint32_t seed_ = 0;
+  WorldLight* world_ = nullptr;
+  std::vector<Grid> grids_;
+  glm::dvec3 list_origin_{0};
+  GeometryVolume volume_;
+  gl::Buffer list_, met_, radiosity_, direct_;
+  gl::Texture met_texels_, radiosity_texels_;
+  gl::Buffer list_block_, view_block_;  // CacheVolumes about the list's origin, and about the camera
+  gl::Texture cells_;
+  gl::Sampler linear_;
+  uint32_t active_ = 0;
+};
+
+gl::ProgramSource list_cells_program(bool dilate);
+gl::ProgramSource march_program(int steps);
+struct GatherOptions {
+  Encoding encoding = Encoding::kY3Co1Cg1;
+  bool split = false, world = false, bounced = false;
+};
+gl::ProgramSource gather_program(const GatherOptions& options);
+gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache);
+gl::ProgramSource light_surfels_program(bool shadows);
+
+}  // namespace panoptes::radiance_cache

@@ -1,0 +1,52 @@
+// Sends rays from the cells that hold light, and notes what they meet. One invocation a ray.
+#include "base/invocation.glsl"
+#include "radiance_cache/cells.glsl"
+#include "radiance_cache/march.glsl"
+#include "radiance_cache/rays.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer List { uint active_cells[]; };
+layout(std430, binding = 1) writeonly buffer Met { uint met[]; };
+layout(location = 0) uniform uvec3 counts;     // cells of the list, directions, seed
+layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];  // xyz: of each volume's first cell
+
+// Tries to find an empty voxel of the cell to begin in; where rays begin inside of a solid voxel they
+// see nothing, and where they skip one they see through walls.
+const int TRIES = 8;
+
+void main() {
+  uint ray = spread_invocation(64u);
+  if (ray >= counts.x * counts.y) return;
+  uint slot = ray / counts.y, k = ray % counts.y;
+  Cell cell = cell_of(cache, active_cells[slot]);
+  CacheVolume volume = cache.volumes[cell.volume];
+  ivec3 place = cell.at + lattice[cell.volume].xyz;
+  float turn = cell_turn(place, counts.z);
+  vec3 direction = cache_direction(k, counts.y, turn);
+
+  uint random = hash(k + hash(floatBitsToUint(turn)));
+  int side = volume.cells.w;
+  bool found = false;
+  vec3 start = vec3(0.0);
+  for (int i = 0; i < TRIES && !found; ++i) {
+    vec3 u;
+    for (int axis = 0; axis < 3; ++axis) {
+      random = hash(random);
+      u[axis] = unit_float(random);
+    }
+    start = (vec3(cell.at) + u) * float(side);
+    found = !voxel_is_solid(volume, ivec3(start));
+  }
+  uint result = RAY_LOST;
+  if (found) {
+    March m = march(volume.low.xyz + start * voxel_size(volume), direction, cell.volume,
+                    unit_float(hash(random)));
+    result = RAY_MISS;
+    if (m.hit) {
+      uint surfel = surfel_of(cache.volumes[m.volume], m.voxel);
+      vec3 normal = unpack_unit(fetch_surfel(surfel).surface.x);
+      result = 2u * surfel + (dot(normal, direction) > 0.0 ? 1u : 0u);
+    }
+  }
+  met[ray] = result;
+}
