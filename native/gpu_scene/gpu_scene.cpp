@@ -59,6 +59,7 @@ void GpuScene::update(scene::Scene& scene) {
   };
   if (shapes || changes.lights || values_of_any(&scene::MaterialFacts::alpha)) ++shadow_revision_;
   if (shapes || values_of_any(&scene::MaterialFacts::emission)) ++emission_revision_;
+  if (shapes || !changes.material_params.empty()) ++surface_revision_;
   const bool resized = std::any_of(changes.meshes.begin(), changes.meshes.end(),
                                    [](const auto& item) { return item.second.resized(); });
   const bool reshaped = std::any_of(changes.meshes.begin(), changes.meshes.end(),

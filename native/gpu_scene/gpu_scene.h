@@ -68,6 +68,9 @@ class GpuScene {
   // triangle has, and which of these have an alpha.
   int64_t geometry_revision() const { return geometry_revision_; }
 
+  // The same for how surfaces look at all: materials and their values, images, shapes and places.
+  int64_t surface_revision() const { return surface_revision_; }
+
   // Where the GPU holds the scene's instance number `index`, which has to be one that is drawn.
   uint32_t place_of(size_t index) const { return instances_.place_of(index); }
   // Where materials() holds a material that some drawn instance shows; 0: the one of empty slots.
@@ -114,7 +117,7 @@ class GpuScene {
 
   gl::DeviceInfo device_;
   int64_t shadow_revision_ = 0, emission_revision_ = 0, world_revision_ = 0,
-          geometry_revision_ = 0;
+          geometry_revision_ = 0, surface_revision_ = 0;
   MeshStore meshes_;
   InstanceList instances_;
   DrawLists draws_;

@@ -9,6 +9,7 @@
 #include "path_tracer/world_map.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
+#include "radiance_cache/geometry_volume.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/sun_cascades.h"
@@ -208,6 +209,7 @@ class Shaders : public ::testing::Test {
             add(rasterize::raster_program(&m, {.depth_only = depth_only}));
         for (int bits = 0; bits < 16; ++bits) add(rasterize::surface_program(m, surfaces(bits)));
         add(rasterize::emitter_program(m));
+        add(radiance_cache::surfels_program(m));
         // What a material is makes no difference to how its lobes are stored: one is tried with all.
         for (int bits = 0; bits < 16; ++bits)
           if (bits == 0 || bits == 15 || m.textures.size() == 2)
@@ -288,6 +290,7 @@ class Shaders : public ::testing::Test {
       }
     add(ray_picture::camera_rays_program());
     add(tracing::flatten_program());
+    for (gl::ProgramSource& source : radiance_cache::volume_programs()) add(std::move(source));
     for (int bits = 0; bits < 4; ++bits) {
       add(tracing::open_rays_program(bits & 1, bits & 2));
       for (bool alpha_only : {false, true})
