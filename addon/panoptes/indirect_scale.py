@@ -16,12 +16,13 @@ def of_object(thing, warn):
     # Reading a group that has never been set would make one.
     if not thing.is_property_set('panoptes'):
         return NEUTRAL
-    found = thing.panoptes.indirect_luminance, thing.panoptes.indirect_chrominance
-    if any(map(math.isnan, found)):
+    ours = thing.panoptes
+    luminance, chrominance = ours.indirect_luminance, ours.indirect_chrominance
+    if math.isnan(luminance) or math.isnan(chrominance):
         warn(f"The strength of indirect light of object '{thing.name}' is not a number; 1 is used instead. Set it "
              'again in its Indirect Light panel.')
         return NEUTRAL
-    return tuple(min(max(value, 0.0), MOST) for value in found)
+    return min(max(luminance, 0.0), MOST), min(max(chrominance, 0.0), MOST)
 
 
 def of_instance(thing, maker, warn):
