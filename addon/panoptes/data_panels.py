@@ -5,10 +5,7 @@ import bpy
 from bpy_extras.node_utils import find_node_input
 
 from . import compat
-from .engine_panel import EnginePanel
-
-# Objects with a surface that rays can meet.
-_GEOMETRY = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT', 'CURVES', 'POINTCLOUD', 'VOLUME'}
+from .engine_panel import EnginePanel, GEOMETRY
 
 
 class PANOPTES_PT_visibility(EnginePanel, bpy.types.Panel):
@@ -43,7 +40,7 @@ class PANOPTES_PT_ray_visibility(EnginePanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         """Show the panel for objects with a surface."""
-        return super().poll(context) and context.object.type in _GEOMETRY
+        return super().poll(context) and context.object.type in GEOMETRY
 
     def draw(self, context):
         """Draw the panel."""

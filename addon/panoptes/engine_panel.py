@@ -2,6 +2,8 @@
 """What all panels of Panoptes have in common."""
 
 ENGINE = 'PANOPTES'
+# Objects with a surface that rays can meet.
+GEOMETRY = {'MESH', 'CURVE', 'SURFACE', 'META', 'FONT', 'CURVES', 'POINTCLOUD', 'VOLUME'}
 
 
 class EnginePanel:

@@ -3,23 +3,15 @@
 
 import numpy as np
 
-from . import cameras
+from . import cameras, debug_pictures
+from .wording import listed
 
-# Debug pictures whose names begin so are ours; the others show rays at work.
-PICTURE_PREFIX = 'occlusion_'
 # Of a world where no one has set another; Blender's own default.
 _DEFAULT_DISTANCE = 10.0
 # Metres. Nearer is within the rounding of depth maps, farther is to the end of any scene.
 _LEAST_DISTANCE, _FARTHEST = 1e-6, 1e6
 # The native engine looks at no more.
 _MOST_CAMERAS = 4
-_MOST_NAMED = 3
-
-
-def picture(settings):
-    """Return which occlusion `scene.panoptes` asks for in place of the scene; 'none' for the scene itself."""
-    chosen = settings.debug_picture
-    return chosen[len(PICTURE_PREFIX):] if chosen.startswith(PICTURE_PREFIX) else 'none'
 
 
 def distance(scene):
@@ -51,7 +43,7 @@ def settings(depsgraph, warn):
         'phantom_cameras': _phantom_cameras(depsgraph, ours.phantom_cameras, warn),
         'filter': ours.filter.lower(),
         'deep_shadows': ours.deep_shadows,
-        'picture': picture(scene.panoptes),
+        'picture': debug_pictures.of_technique(scene.panoptes, debug_pictures.OCCLUSION),
     }
 
 
@@ -65,7 +57,7 @@ def _phantom_cameras(depsgraph, collection, warn):
     things = sorted(collection.all_objects, key=lambda thing: thing.name_full)
     others = [thing.name for thing in things if thing.type != 'CAMERA']
     if others:
-        warn(f"In collection '{collection.name}', {_listed(others)} cannot be looked through; keep only cameras "
+        warn(f"In collection '{collection.name}', {listed(others)} cannot be looked through; keep only cameras "
              'in the collection of phantom cameras.')
     found = []
     for camera in (thing for thing in things if thing.type == 'CAMERA'):
@@ -90,9 +82,3 @@ def _view(depsgraph, camera, warn):
              'transform.')
         return None
     return {'view': view.tolist(), 'projection': projection.tolist()}
-
-
-def _listed(names):
-    """Return "'A', 'B', 'C' and 2 more"."""
-    shown = ', '.join(f"'{name}'" for name in names[:_MOST_NAMED])
-    return shown + (f' and {len(names) - _MOST_NAMED} more' if len(names) > _MOST_NAMED else '')

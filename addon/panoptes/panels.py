@@ -6,7 +6,7 @@ import textwrap
 
 import bpy
 
-from . import occlusion_panels, passes, requests, session
+from . import debug_pictures, indirect_panels, occlusion_panels, passes, requests, session
 from .engine_panel import EnginePanel
 
 class PANOPTES_PT_take_over(EnginePanel, bpy.types.Panel):
@@ -53,7 +53,7 @@ class PANOPTES_PT_sampling_limits(EnginePanel, bpy.types.Panel):
 
 
 class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
-    """Pictures of rays and of ambient occlusion at work."""
+    """Pictures of rays, ambient occlusion and indirect light at work."""
 
     bl_label = 'Debug'
     bl_parent_id = 'PANOPTES_PT_sampling'
@@ -64,7 +64,7 @@ class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
         settings = context.scene.panoptes
         column = self._column()
         column.prop(settings, 'debug_picture')
-        if requests.shows_rays(settings) and not _traces_paths(context):
+        if debug_pictures.shows_rays(settings) and not _traces_paths(context):
             _draw_structure(column, settings.primitive)
 
 
@@ -247,4 +247,5 @@ class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
 
 CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_debug,
            PANOPTES_PT_light_paths, PANOPTES_PT_light_path_kinds, PANOPTES_PT_clamping, PANOPTES_PT_rays,
-           PANOPTES_PT_shadows, *occlusion_panels.CLASSES, PANOPTES_PT_film, PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)
+           PANOPTES_PT_shadows, *occlusion_panels.CLASSES, *indirect_panels.CLASSES, PANOPTES_PT_film,
+           PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)

@@ -21,8 +21,9 @@ def merge_key(scene, request):
     key = {name: value for name, value in request.items()
            if name not in ('samples', 'live', 'pieces', 'settings', 'view', 'projection')}
     key.update(request['settings'])
-    for name, value in key.pop('occlusion', {}).items():
-        key[f'occlusion_{name}'] = value
+    for technique in ('occlusion', 'cache', 'specular_rays'):
+        for name, value in key.pop(technique, {}).items():
+            key[f'{technique}_{name}'] = value
     key.pop('time_budget', None)
     key['passes'] = sorted(request['passes'])
     key['camera'] = [request['view'].tolist(), request['projection'].tolist()]

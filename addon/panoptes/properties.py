@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`scene.panoptes`: every option of a render, grouped by technique; `view_layer.panoptes`: more passes."""
+"""`scene.panoptes`: every option of a render, grouped by technique; and what view layers and objects have."""
 
 import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
                        StringProperty)
 
-from . import occlusion_properties
+from . import occlusion_properties, radiance_cache_properties, specular_rays
 
 
 class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
@@ -147,7 +147,9 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
     seed: IntProperty(
         name='Seed', description='Another seed gives another pattern of noise', default=0, min=0)
     bounces: IntProperty(
-        name='Bounces', description='How often light is scattered on its way, by surfaces of all kinds',
+        name='Bounces',
+        description='How often light is scattered on its way, by surfaces of all kinds. Real-time has a limit of '
+                    'its own besides, under Indirect Light',
         default=8, min=0, max=1024)
     noise_threshold: FloatProperty(
         name='Noise Threshold',
@@ -168,10 +170,11 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
         default=False)
     debug_picture: EnumProperty(
         name='Debug Picture',
-        description='Show rays or ambient occlusion at work in place of the scene; the view transform '
-                    'Standard leaves the colours as they are. Numbers of rays are black 0, blue 3, cyan '
+        description='Show rays, ambient occlusion or indirect light at work in place of the scene; the view '
+                    'transform Standard leaves the colours as they are. Numbers of rays are black 0, blue 3, cyan '
                     '15, green 63, yellow 255, red 1023 and white from 4095 on. Pictures of occlusion '
-                    'are of that in Real-time, whatever the method, and become smoother with samples',
+                    'and of indirect light are of those in Real-time, whatever the method, and become smoother '
+                    'with samples',
         items=(
             ('none', 'None', 'Show the scene'),
             ('steps', 'Steps', "Nodes or cells that a pixel's ray visits"),
@@ -179,11 +182,14 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
             ('lists', 'Lists', "Triangles in the longest list that a pixel's ray goes through"),
             ('tiles', 'Tiles', "The cell in which a pixel's ray ends, each in a colour of its own"),
             *occlusion_properties.PICTURES,
+            *radiance_cache_properties.PICTURES,
         ),
         default='none')
     realtime: PointerProperty(type=PanoptesRealtimeSettings)
     primitive: PointerProperty(type=PanoptesPrimitiveSettings)
     ambient_occlusion: PointerProperty(type=occlusion_properties.PanoptesOcclusionSettings)
+    radiance_cache: PointerProperty(type=radiance_cache_properties.PanoptesRadianceCacheSettings)
+    specular_rays: PointerProperty(type=specular_rays.PanoptesSpecularRaysSettings)
     last_stats: StringProperty(
         name='Last Statistics', description='Statistics of the last final render, as JSON',
         options={'HIDDEN', 'SKIP_SAVE'})
@@ -197,19 +203,22 @@ class PanoptesViewLayerSettings(bpy.types.PropertyGroup):
 
 
 _CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, occlusion_properties.PanoptesOcclusionSettings,
-            PanoptesSceneSettings, PanoptesViewLayerSettings)
+            radiance_cache_properties.PanoptesRadianceCacheSettings, specular_rays.PanoptesSpecularRaysSettings,
+            PanoptesSceneSettings, PanoptesViewLayerSettings, radiance_cache_properties.PanoptesObjectSettings)
 
 
 def register():
-    """Add `panoptes` to all scenes and view layers."""
+    """Add `panoptes` to all scenes, view layers and objects."""
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Scene.panoptes = PointerProperty(type=PanoptesSceneSettings)
     bpy.types.ViewLayer.panoptes = PointerProperty(type=PanoptesViewLayerSettings)
+    bpy.types.Object.panoptes = PointerProperty(type=radiance_cache_properties.PanoptesObjectSettings)
 
 
 def unregister():
-    """Remove `panoptes` from all scenes and view layers."""
+    """Remove `panoptes` from all scenes, view layers and objects."""
+    del bpy.types.Object.panoptes
     del bpy.types.ViewLayer.panoptes
     del bpy.types.Scene.panoptes
     for cls in reversed(_CLASSES):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from . import cameras, lens, occlusion
+from . import cameras, debug_pictures, lens, occlusion, radiance_cache, specular_rays
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
@@ -17,14 +17,8 @@ class BadRequest(RuntimeError):
 
 def method(settings):
     """Return the method that is used for what `scene.panoptes` asks: 'realtime' or 'primitive'."""
-    # Pictures of occlusion are of that in Real-time.
-    paths = settings.method == 'primitive' and occlusion.picture(settings) == 'none'
+    paths = settings.method == 'primitive' and not debug_pictures.shows_technique(settings)
     return 'primitive' if paths else 'realtime'
-
-
-def shows_rays(settings):
-    """Tell whether `scene.panoptes` asks for a picture of rays at work."""
-    return settings.debug_picture != 'none' and occlusion.picture(settings) == 'none'
 
 
 def _path_settings(scene):
@@ -49,6 +43,15 @@ def _structure_settings(paths):
     return {name: getattr(paths, name) for name in ('structure', 'tiles', 'buckets')}
 
 
+def _realtime_settings(depsgraph, warn):
+    """Return the settings of the techniques of Real-time, each a dictionary."""
+    return {
+        'occlusion': occlusion.settings(depsgraph, warn),
+        'cache': radiance_cache.settings(depsgraph, warn),
+        'specular_rays': specular_rays.settings(depsgraph.scene),
+    }
+
+
 def _settings(depsgraph, used, warn):
     """Return the settings that count for a method ('realtime' or 'primitive')."""
     scene, settings = depsgraph.scene, depsgraph.scene.panoptes
@@ -61,13 +64,13 @@ def _settings(depsgraph, used, warn):
     if used == 'primitive':
         found.update(_path_settings(scene))
     else:
-        found['occlusion'] = occlusion.settings(depsgraph, warn)
+        found.update(_realtime_settings(depsgraph, warn))
     # 0 switches a limit off.
     if settings.time_budget > 0.0:
         found['time_budget'] = settings.time_budget
     if settings.noise_threshold > 0.0:
         found['noise_threshold'] = settings.noise_threshold
-    if shows_rays(settings):
+    if debug_pictures.shows_rays(settings):
         found['debug_picture'] = settings.debug_picture
         found.update(_structure_settings(settings.primitive))
     return found
@@ -123,7 +126,7 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None)
 
 def _lens(camera, settings, warn):
     """Return the `lens` of a request; {} where everything is sharp."""
-    if not lens.is_used(camera) or occlusion.picture(settings) != 'none':
+    if not lens.is_used(camera) or debug_pictures.shows_technique(settings):
         return {}
     if method(settings) != 'primitive' or settings.primitive.primary == 'RASTERISED':
         warn(f"Camera '{camera.name}' has depth of field, which rasterised pictures do not show; everything is "
@@ -164,13 +167,15 @@ def _active_camera(depsgraph):
 def preview(depsgraph):
     """Return the request of a preview.
 
-    It has few samples, small shadow maps and no ambient occlusion, and takes no longer than a second.
+    It has few samples, small shadow maps and nothing that is gathered from around, and takes no longer
+    than a second.
     """
     width, height = cameras.frame(depsgraph.scene.render)
     view, projection = cameras.matrices(depsgraph, _active_camera(depsgraph), width, height)
     request = build(depsgraph, (width, height), (0, _PREVIEW_SAMPLES), view, projection,
                     ['Combined'], lambda sentence: None)
-    request['settings'].update(time_budget=1.0, shadow_resolution=256, occlusion={'strength': 0.0})
+    request['settings'].update(time_budget=1.0, shadow_resolution=256, occlusion={'strength': 0.0},
+                               cache={'enabled': False}, specular_rays={'mode': 'off'})
     return request
 
 
@@ -253,10 +258,12 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
                     projection, ['Combined'], warn, _looked_through(depsgraph, space, region_data))
     # The picture is shown while it refines.
     request['live'] = True
+    # It comes after others like it, whose light it may keep.
+    request['viewport'] = True
     request['settings']['filter_penumbrae'] = scene.panoptes.realtime.penumbrae != 'SAMPLED'
     if request['method'] != 'realtime':
         # Paths take over a picture that Real-time begins.
-        request['settings']['occlusion'] = occlusion.settings(depsgraph, warn)
+        request['settings'].update(_realtime_settings(depsgraph, warn))
     # Limits are for final renders; a view goes on until it has its samples.
     for limit in ('time_budget', 'noise_threshold'):
         request['settings'].pop(limit, None)

@@ -30,6 +30,9 @@ def take_over(scene):
     ours.bounces = cycles.max_bounces
     for kind in ('diffuse', 'glossy', 'transmission'):
         setattr(ours.primitive, f'{kind}_bounces', getattr(cycles, f'{kind}_bounces'))
+    # Real-time's bounces are all diffuse. More than its own few would show little and take long.
+    cache = ours.radiance_cache
+    cache.bounces = min(cycles.diffuse_bounces, cache.bl_rna.properties['bounces'].default)
     ours.primitive.transparent_bounces = cycles.transparent_max_bounces
     ours.primitive.clamp_direct = cycles.sample_clamp_direct
     ours.primitive.clamp_indirect = cycles.sample_clamp_indirect

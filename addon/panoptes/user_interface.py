@@ -3,10 +3,11 @@
 
 import bpy
 
-from . import compat, data_panels, honoured, panels, take_over
+from . import compat, data_panels, honoured, indirect_panels, panels, take_over
 from .engine_panel import ENGINE
 
-_CLASSES = (take_over.PANOPTES_OT_take_over_cycles, *panels.CLASSES, *data_panels.CLASSES)
+_CLASSES = (take_over.PANOPTES_OT_take_over_cycles, *panels.CLASSES, *data_panels.CLASSES,
+            *indirect_panels.OBJECT_CLASSES)
 
 
 def register():

@@ -77,7 +77,8 @@ void GpuScene::update(scene::Scene& scene) {
   if (changes.instances || records_moved)
     instances_.place_all(scene, meshes_);
   else
-    instances_.move(scene, meshes_, changes.instance_matrices);
+    for (const auto* some : {&changes.instance_matrices, &changes.instance_scales})
+      instances_.place(scene, meshes_, *some);
   if (structure || resized) update_draws(scene);
   meshes_.flush();
   params_.flush();

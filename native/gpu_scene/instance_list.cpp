@@ -3,6 +3,8 @@
 #include "gpu_scene/placement.h"
 #include "gpu_scene/units.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include <bit>
 
 namespace panoptes::gpu_scene {
@@ -22,6 +24,7 @@ InstanceList::Record InstanceList::record_of(const scene::Instance& instance, co
   uint32_t seed = 2166136261u;
   for (size_t i = 0; i < 12; ++i) seed = (seed ^ record[i]) * 16777619u;
   record[14] = seed;
+  record[15] = glm::packHalf2x16(instance.indirect_scale);
   return record;
 }
 
@@ -34,14 +37,14 @@ void InstanceList::place_all(const scene::Scene& scene, const MeshStore& meshes)
     records.push_back(record_of(instance, meshes.mesh(instance.mesh)));
     indices.push_back(i);
   }
-  const std::vector<uint32_t> places = place(records, placed_);
+  const std::vector<uint32_t> places = gpu_scene::place(records, placed_);
   places_.assign(scene.instances().size(), kNotPlaced);
   for (size_t i = 0; i < places.size(); ++i) places_[indices[i]] = places[i];
   buffer_.write(0, std::span<const Record>(placed_));
 }
 
-void InstanceList::move(const scene::Scene& scene, const MeshStore& meshes,
-                        const std::set<uint32_t>& indices) {
+void InstanceList::place(const scene::Scene& scene, const MeshStore& meshes,
+                         const std::set<uint32_t>& indices) {
   for (const uint32_t index : indices) {
     const uint32_t at = places_[index];
     if (at == kNotPlaced) continue;

@@ -20,8 +20,8 @@ class InstanceList {
 
   // All instances, after the list or what they refer to has changed.
   void place_all(const scene::Scene& scene, const MeshStore& meshes);
-  // Just these, whose matrices have changed.
-  void move(const scene::Scene& scene, const MeshStore& meshes, const std::set<uint32_t>& indices);
+  // Just these, whose matrices or scales have changed.
+  void place(const scene::Scene& scene, const MeshStore& meshes, const std::set<uint32_t>& indices);
   void flush() { buffer_.flush(); }
 
   // Where an instance of the scene is in the buffer; kNotPlaced for those that show no mesh.

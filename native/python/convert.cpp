@@ -1,28 +1,9 @@
 #include "python/convert.h"
 
-#include "base/choices.h"
-
-#include <set>
+#include "python/dict.h"
+#include "python/technique_settings.h"
 
 namespace panoptes::python {
-
-namespace {
-
-template <class T>
-T get(const py::dict& dict, const char* key, const T& otherwise) {
-  if (!dict.contains(key) || dict[key].is_none()) return otherwise;
-  try {
-    return dict[key].cast<T>();
-  } catch (const py::cast_error&) {
-    fail("'{}' has a value of the wrong type: please report it", key);
-  }
-}
-
-template <class T>
-T need(const py::dict& dict, const char* key) {
-  if (!dict.contains(key)) fail("'{}' is missing: please report it", key);
-  return get<T>(dict, key, T{});
-}
 
 glm::dmat4 wide_matrix(const py::dict& dict, const char* key) {
   const auto array = need<Array<double>>(dict, key);
@@ -32,8 +13,6 @@ glm::dmat4 wide_matrix(const py::dict& dict, const char* key) {
     for (int c = 0; c < 4; ++c) m[c][r] = array.data()[r * 4 + c];
   return m;
 }
-
-}  // namespace
 
 scene::TextureUse texture_use(const py::tuple& tuple) {
   if (tuple.size() != 3) fail("a texture must be (image, interpolation, extension)");
@@ -129,52 +108,6 @@ path_tracer::Settings path_settings(const py::dict& dict) {
   return s;
 }
 
-template <class E, size_t N>
-E named(const py::dict& dict, const char* key, const std::array<std::string_view, N>& names) {
-  const auto name = get<std::string>(dict, key, std::string(names[0]));
-  const E found = find_choice<E>(names, name);
-  if (!known_choice(names, found))
-    fail("'{}' of ambient occlusion cannot be '{}': choose one of {}", key, name,
-         fmt::join(names, ", "));
-  return found;
-}
-
-ambient_occlusion::Settings occlusion_settings(const py::dict& dict) {
-  namespace ao = ambient_occlusion;
-  static const std::set<std::string> known{
-      "estimator",       "distance", "strength",           "samples",         "importance_sampling",
-      "initial_samples", "phantoms", "phantom_resolution", "phantom_cameras", "secondary_views",
-      "filter",          "picture",  "deep_shadows"};
-  for (const auto& item : dict)
-    if (!known.count(item.first.cast<std::string>()))
-      fail("ambient occlusion has no setting '{}': please report it",
-           item.first.cast<std::string>());
-  ao::Settings s;
-  s.estimator = named<ao::Estimator>(dict, "estimator", ao::kEstimatorNames);
-  s.distance = get(dict, "distance", s.distance);
-  s.strength = get(dict, "strength", s.strength);
-  s.samples = get(dict, "samples", s.samples);
-  s.importance_sampling = get(dict, "importance_sampling", s.importance_sampling);
-  s.initial_samples = get(dict, "initial_samples", s.initial_samples);
-  s.secondary_views = get(dict, "secondary_views", s.secondary_views);
-  s.phantoms = named<ao::Phantoms>(dict, "phantoms", ao::kPhantomsNames);
-  s.phantom_resolution = get(dict, "phantom_resolution", s.phantom_resolution);
-  s.filter = named<ao::Filter>(dict, "filter", ao::kFilterNames);
-  s.deep_shadows = get(dict, "deep_shadows", s.deep_shadows);
-  s.picture = named<ao::Picture>(dict, "picture", ao::kPictureNames);
-  const auto cameras = get(dict, "phantom_cameras", py::list());
-  if (cameras.size() > size_t(ao::kMostPhantomCameras))
-    fail("{} phantom cameras are more than can be used: choose {} at most", cameras.size(),
-         ao::kMostPhantomCameras);
-  for (const auto& item : cameras) {
-    const auto camera = item.cast<py::dict>();
-    gpu_scene::Camera& c = s.phantom_cameras[size_t(s.phantom_camera_count++)];
-    c.world_to_camera = wide_matrix(camera, "view");
-    c.projection = wide_matrix(camera, "projection");
-  }
-  return s;
-}
-
 }  // namespace
 
 engine::RenderRequest request(const py::dict& dict) {
@@ -205,6 +138,7 @@ engine::RenderRequest request(const py::dict& dict) {
   r.exposure = get(dict, "exposure", r.exposure);
   r.force_all_effects = get(dict, "force_all_effects", false);
   r.live = get(dict, "live", false);
+  r.viewport = get(dict, "viewport", false);
   r.pieces = get(dict, "pieces", false);
   const py::dict settings = get(dict, "settings", py::dict());
   static const std::set<std::string> known{
@@ -213,7 +147,7 @@ engine::RenderRequest request(const py::dict& dict) {
       "tiles",                "buckets",             "bounces",          "diffuse_bounces",
       "glossy_bounces",       "transmission_bounces", "transparent_bounces", "clamp_direct",
       "clamp_indirect",       "filter_glossy",       "shadow_maps",      "raster_primary",
-      "ao_distance",          "occlusion"};
+      "ao_distance",          "occlusion",           "cache",            "specular_rays"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -237,6 +171,8 @@ engine::RenderRequest request(const py::dict& dict) {
   r.structure.buckets = get(settings, "buckets", 0);
   r.paths = path_settings(settings);
   r.occlusion = occlusion_settings(get(settings, "occlusion", py::dict()));
+  r.cache = cache_settings(get(settings, "cache", py::dict()));
+  r.specular_rays = specular_settings(get(settings, "specular_rays", py::dict()));
   return r;
 }
 

@@ -36,15 +36,18 @@ std::vector<glm::mat4> matrices_of(const Array<float>& array) {
 
 void set_instances(Engine& engine, const Array<int64_t>& meshes, const Array<float>& matrices,
                    const Array<int>& material_offsets, const Array<int64_t>& material_table,
-                   const std::optional<Array<uint8_t>>& visibility) {
+                   const std::optional<Array<uint8_t>>& visibility,
+                   const std::optional<Array<float>>& scales) {
   const std::vector<glm::mat4> places = matrices_of(matrices);
   if (places.size() != size_t(meshes.size()) || places.size() != size_t(material_offsets.size()) ||
-      (visibility && places.size() != size_t(visibility->size())))
+      (visibility && places.size() != size_t(visibility->size())) ||
+      (scales && places.size() * 2 != size_t(scales->size())))
     fail("instances were handed over with arrays of different lengths: please report it");
   std::vector<scene::Instance> instances(places.size());
   for (size_t i = 0; i < places.size(); ++i) {
     instances[i] = {meshes.data()[i], places[i], material_offsets.data()[i]};
     if (visibility) instances[i].visibility = visibility->data()[i];
+    if (scales) instances[i].indirect_scale = {scales->data()[i * 2], scales->data()[i * 2 + 1]};
   }
   std::vector<Id> table(material_table.data(), material_table.data() + material_table.size());
   edit(engine, [&](Scene& scene) { scene.set_instances(std::move(instances), std::move(table)); });
@@ -55,6 +58,13 @@ void set_instance_matrices(Engine& engine, const Array<int>& indices,
   const std::vector<glm::mat4> places = matrices_of(matrices);
   const std::vector<int> list(indices.data(), indices.data() + indices.size());
   edit(engine, [&](Scene& scene) { scene.set_instance_matrices(list, places); });
+}
+
+void set_instance_scales(Engine& engine, const Array<int>& indices, const Array<float>& scales) {
+  const auto values = rows<glm::vec2>(scales, "scales", 2);
+  const std::vector<glm::vec2> copied(values.begin(), values.end());
+  const std::vector<int> list(indices.data(), indices.data() + indices.size());
+  edit(engine, [&](Scene& scene) { scene.set_instance_scales(list, copied); });
 }
 
 void set_material(Engine& engine, Id id, const std::string& name, const std::string& code,
@@ -194,8 +204,9 @@ py::class_<Engine> bind_engine(py::module_& m) {
       .def("remove_mesh", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_mesh(id); }); })
       .def("set_instances", &set_instances, py::arg("mesh_ids"), py::arg("matrices"),
            py::arg("material_offsets"), py::arg("material_table"),
-           py::arg("visibility") = py::none())
+           py::arg("visibility") = py::none(), py::arg("indirect_scales") = py::none())
       .def("set_instance_matrices", &set_instance_matrices, py::arg("indices"), py::arg("matrices"))
+      .def("set_instance_scales", &set_instance_scales, py::arg("indices"), py::arg("scales"))
       .def("set_material", &set_material, py::arg("id"), py::arg("name"), py::arg("code"),
            py::arg("params"), py::arg("textures"), py::arg("facts"))
       .def("set_material_params",

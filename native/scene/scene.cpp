@@ -22,6 +22,14 @@ void check_id(Id id, const char* what) {
   if (id <= 0) fail("a {} was handed over with id {}: ids must be positive", what, id);
 }
 
+void check_scale(const glm::vec2& scale) {
+  for (const float s : {scale.x, scale.y})
+    if (!(s >= 0 && s <= kMostIndirectScale))
+      fail("an instance was handed over with a scale of {} for its indirect light: only 0 to {} have a "
+           "meaning",
+           s, kMostIndirectScale);
+}
+
 // Less than this many equal elements between two edited runs are sent along.
 constexpr size_t kRunGap = 64;
 
@@ -105,31 +113,52 @@ void Scene::remove_mesh(Id id) {
 }
 
 void Scene::set_instances(std::vector<Instance> instances, std::vector<Id> material_table) {
-  for (const Instance& instance : instances)
+  for (const Instance& instance : instances) {
     if (instance.visibility & ~shared::SEEN_BY_ALL)
       fail("an instance was handed over with visibility {}: only bits of {} have a meaning",
            instance.visibility, shared::SEEN_BY_ALL);
+    check_scale(instance.indirect_scale);
+  }
   instances_ = std::move(instances);
   material_table_ = std::move(material_table);
   changes_.instances = true;
-  changes_.instance_matrices.clear();
+  forget_single_instances();
 }
 
 void Scene::set_instance_matrices(std::span<const int> indices,
                                   std::span<const glm::mat4> matrices) {
-  if (indices.size() != matrices.size())
-    fail("{} matrices were handed over for {} instances: please report it", matrices.size(),
-         indices.size());
+  check_indices(indices, matrices.size(), "matrices");
   for (size_t i = 0; i < indices.size(); ++i) {
-    if (indices[i] < 0 || size_t(indices[i]) >= instances_.size())
-      fail("instance {} does not exist: please report it", indices[i]);
     Instance& instance = instances_[size_t(indices[i])];
     // Whoever comes or goes changes the list of what is drawn.
     if (finite(instance.object_to_world) != finite(matrices[i])) changes_.instances = true;
     instance.object_to_world = matrices[i];
     changes_.instance_matrices.insert(uint32_t(indices[i]));
   }
-  if (changes_.instances) changes_.instance_matrices.clear();
+  if (changes_.instances) forget_single_instances();
+}
+
+void Scene::set_instance_scales(std::span<const int> indices, std::span<const glm::vec2> scales) {
+  check_indices(indices, scales.size(), "scales");
+  for (const glm::vec2& scale : scales) check_scale(scale);
+  for (size_t i = 0; i < indices.size(); ++i) {
+    instances_[size_t(indices[i])].indirect_scale = scales[i];
+    changes_.instance_scales.insert(uint32_t(indices[i]));
+  }
+  if (changes_.instances) forget_single_instances();
+}
+
+void Scene::check_indices(std::span<const int> indices, size_t values, const char* what) const {
+  if (indices.size() != values)
+    fail("{} {} were handed over for {} instances: please report it", values, what, indices.size());
+  for (const int index : indices)
+    if (index < 0 || size_t(index) >= instances_.size())
+      fail("instance {} does not exist: please report it", index);
+}
+
+void Scene::forget_single_instances() {
+  changes_.instance_matrices.clear();
+  changes_.instance_scales.clear();
 }
 
 void Scene::set_material(Id id, Material material) {

@@ -86,11 +86,17 @@ struct MeshInput {
 // not finite (said in Mesh::warning). Throws Error on an index out of range.
 Mesh make_mesh(const MeshInput& input);
 
+// The largest number of half precision, which scales have on the GPU.
+constexpr float kMostIndirectScale = 65504;
+
 struct Instance {
   Id mesh = 0;
   glm::mat4 object_to_world{1.0f};  // column-major, as GLM has it; not finite: draws nothing
   int material_offset = 0;          // in Scene::material_table, one entry a slot
   uint32_t visibility = shared::SEEN_BY_ALL;  // SEEN_BY_... bits
+  // What its indirect light is multiplied by in Real-time: luminance and chrominance, each from 0 to
+  // kMostIndirectScale.
+  glm::vec2 indirect_scale{1.0f};
 };
 
 struct TextureUse {
@@ -162,11 +168,11 @@ struct MeshChange {
 struct Changes {
   std::map<Id, MeshChange> meshes;                   // set or removed
   std::set<Id> materials, material_params, images;  // set or removed
-  std::set<uint32_t> instance_matrices;
+  std::set<uint32_t> instance_matrices, instance_scales;
   bool instances = false, lights = false, world = false;
   bool any() const {
     return instances || lights || world || !meshes.empty() || !materials.empty() ||
-           !material_params.empty() || !images.empty() || !instance_matrices.empty();
+           !material_params.empty() || !images.empty() || !instance_matrices.empty() || !instance_scales.empty();
   }
 };
 
@@ -175,9 +181,10 @@ class Scene {
   void set_mesh(Id id, Mesh mesh);
   void remove_mesh(Id id);
   // Instances whose matrix is not finite are left out (a warning) until they get another. Throws
-  // Error on visibility bits that there are not.
+  // Error on visibility bits that there are not, and on scales out of range.
   void set_instances(std::vector<Instance> instances, std::vector<Id> material_table);
   void set_instance_matrices(std::span<const int> indices, std::span<const glm::mat4> matrices);
+  void set_instance_scales(std::span<const int> indices, std::span<const glm::vec2> scales);
   void set_material(Id id, Material material);
   void set_material_params(Id id, std::vector<glm::vec4> params);
   void remove_material(Id id);
@@ -211,6 +218,10 @@ class Scene {
 
  private:
   void note_change(Id id, MeshChange change);
+  // Throws Error unless there is an instance for each of `values` values.
+  void check_indices(std::span<const int> indices, size_t values, const char* what) const;
+  // The list of instances is read anew: changes of some of them say no more.
+  void forget_single_instances();
 
   std::map<Id, Mesh> meshes_;
   std::vector<Instance> instances_;

@@ -9,7 +9,7 @@ layout(binding = 1) uniform usamplerBuffer triangle_vertices;  // three indices 
 layout(binding = 2) uniform usamplerBuffer corner_normals;     // three packed units, object space
 layout(binding = 3) uniform samplerBuffer corner_attributes;   // pairs of floats
 layout(binding = 4) uniform samplerBuffer instances;  // 3 rows of object-to-world; bits {mesh
-                                                      // record, visibility, seed}
+                                                      // record, visibility, seed, scales}
 layout(binding = 5) uniform usamplerBuffer tables;    // mesh records, attribute names of materials
 
 // Words of a mesh record in `tables`, then one word an attribute name: the first pair of floats and
@@ -54,6 +54,11 @@ uint fetch_seed(uint instance) {
 // SEEN_BY_CAMERA and its like.
 uint fetch_visibility(uint instance) {
   return floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).y);
+}
+
+// What the indirect light of an instance is multiplied by: luminance and chrominance.
+vec2 fetch_indirect_scale(uint instance) {
+  return unpackHalf2x16(floatBitsToUint(texelFetch(instances, int(instance) * 4 + 3).w));
 }
 
 // The transpose of the inverse times the determinant: normals go through it whatever the scale,

@@ -45,15 +45,18 @@ class SceneState:
     def set_world(self, code, params, textures, constant):
         self.world = (code, params.tobytes(), list(textures), constant)
 
-    def set_instances(self, mesh_ids, matrices, offsets, table, visibility):
-        self.instances = [mesh_ids, matrices.copy(), offsets, table, visibility]
+    def set_instances(self, mesh_ids, matrices, offsets, table, visibility, scales):
+        self.instances = [mesh_ids, matrices.copy(), offsets, table, visibility, scales.copy()]
 
     def set_instance_matrices(self, indices, matrices):
         self.instances[1][indices] = matrices
 
+    def set_instance_scales(self, indices, scales):
+        self.instances[5][indices] = scales
+
     def contents(self):
         """Return everything without ids, which depend on the order of edits."""
-        mesh_ids, matrices, offsets, table, visibility = self.instances
+        mesh_ids, matrices, offsets, table, visibility, scales = self.instances
 
         def material(material_id):
             if material_id == 0:
@@ -62,8 +65,9 @@ class SceneState:
             return code, params, [(self.images[image], *rest) for image, *rest in textures], facts
 
         return {
-            'instances': [(self.meshes[mesh], matrix.tolist(), offset, bits) for mesh, matrix, offset, bits
-                          in zip(mesh_ids.tolist(), matrices, offsets.tolist(), visibility.tolist())],
+            'instances': [(self.meshes[mesh], matrix.tolist(), offset, bits, scale)
+                          for mesh, matrix, offset, bits, scale
+                          in zip(mesh_ids.tolist(), matrices, offsets.tolist(), visibility.tolist(), scales.tolist())],
             'materials': [material(i) for i in table.tolist()],
             'lights': self.lights,
             'world': self.world,

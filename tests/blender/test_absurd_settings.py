@@ -40,6 +40,33 @@ def set_occlusion(**settings):
     return change
 
 
+def set_cache(**settings):
+    def change(scene):
+        bpy.ops.mesh.primitive_cube_add(location=(0.0, 0.0, 1.0))
+        for name, value in settings.items():
+            setattr(scene.panoptes.radiance_cache, name, value)
+    return change
+
+
+def indirect_light_of_object(luminance, chrominance):
+    def change(scene):
+        bpy.ops.mesh.primitive_cube_add(location=(0.0, 0.0, 1.0))
+        ours = bpy.context.object.panoptes
+        ours.indirect_luminance, ours.indirect_chrominance = luminance, chrominance
+    return change
+
+
+def region(place=(0.0, 0.0, 0.0), scale=1.0):
+    def change(scene):
+        box = bpy.data.objects.new('Box', None)
+        box.empty_display_type, box.location, box.scale = 'CUBE', place, (scale,) * 3
+        box.panoptes.indirect_luminance = 0.5
+        boxes = scene.panoptes.radiance_cache.region_collection = bpy.data.collections.new('Boxes')
+        scene.collection.children.link(boxes)
+        boxes.objects.link(box)
+    return change
+
+
 def occlusion_of_world(distance):
     def change(scene):
         scene.view_layers[0].use_pass_ambient_occlusion = True
@@ -158,6 +185,21 @@ CASES = {
     'phantom with an endless lens': phantom_camera(lens=1e30),
     'panoramic phantom': phantom_camera(type='PANO'),
     'phantom without a frame': phantom_camera(type='ORTHO', ortho_scale=0.0),
+    'indirect light that is no number': set_cache(luminance=math.nan),
+    'endless colour of indirect light': set_cache(chrominance=math.inf),
+    'fewest cells': set_cache(resolution=1, voxels=2, directions=8),
+    'finest cells': set_cache(resolution=64, voxels=8, cascades=3),
+    'cells without walls': set_cache(voxel_fill=math.nan),
+    'everything is kept': set_cache(blend=math.inf),
+    'object with indirect light that is no number': indirect_light_of_object(math.nan, 1.0),
+    'object with endless indirect light': indirect_light_of_object(math.inf, math.inf),
+    'region nowhere': region((math.nan, 0.0, 0.0)),
+    'region at the end of the world': region((3e38, 0.0, 0.0)),
+    'region without size': region(scale=0.0),
+    'region of dust': region(scale=1e-30),
+    'region of the universe': region(scale=1e30),
+    'region inside out': region(scale=-1.0),
+    'reflections that are no number': lambda scene: setattr(scene.panoptes.specular_rays, 'roughness', math.nan),
 }
 
 

@@ -79,7 +79,7 @@ class TestMeshes:
         assert sync.recorder.arguments('set_mesh')[0][5].tolist() == [1, 1]
         names = [a[1] for a in sync.recorder.arguments('set_material')]
         assert sorted(names) == ['Material', 'Own']
-        _, _, offsets, table, _ = sync.recorder.arguments('set_instances')[0]
+        _, _, offsets, table, *_ = sync.recorder.arguments('set_instances')[0]
         assert offsets.tolist() == [0] and len(table) == 2 and len(set(table)) == 2
 
     def test_slot_that_does_not_exist_is_the_last_one(self, sync):
@@ -199,7 +199,7 @@ class TestInstances:
         other.material_slots[0].link = 'OBJECT'
         other.material_slots[0].material = bpy.data.materials.new('Other')
         sync.run()
-        ids, _, offsets, table, _ = sync.recorder.arguments('set_instances')[0]
+        ids, _, offsets, table, *_ = sync.recorder.arguments('set_instances')[0]
         assert ids[0] == ids[1]
         assert table[offsets[0]] != table[offsets[1]]
 

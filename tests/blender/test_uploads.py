@@ -174,6 +174,12 @@ class TestObjects:
         uploads.of(lambda: hide('Tile 4'))
         assert_sent(uploads, lambda: hide('Tile 5'), INSTANCE + 3 * DRAW)
 
+    def test_indirect_light(self, uploads):
+        def edit():
+            bpy.data.objects['Tile 6'].panoptes.indirect_luminance = 0.5
+        # Lamps see nothing of it: their maps are kept.
+        assert_sent(uploads, edit, 4, lamps_see=False)
+
     def test_add(self, uploads):
         def edit():
             mesh = quad('New')

@@ -234,6 +234,7 @@ class TestTakingOver:
         assert scene.render.filter_size == 3.0
 
     def test_limits_by_kind(self, scene, cycles):
+        scene.panoptes.radiance_cache.bounces = 8
         cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces = 1, 2, 5
         cycles.transparent_max_bounces = 6
         cycles.sample_clamp_direct, cycles.sample_clamp_indirect, cycles.blur_glossy = 7.0, 4.0, 0.5
@@ -243,6 +244,7 @@ class TestTakingOver:
         assert (ours.diffuse_bounces, ours.glossy_bounces, ours.transmission_bounces) == (1, 2, 5)
         assert (ours.transparent_bounces, ours.clamp_direct, ours.clamp_indirect) == (6, 7.0, 4.0)
         assert ours.filter_glossy == 0.5 and scene.view_layers[0].panoptes.use_pass_sample_count
+        assert scene.panoptes.radiance_cache.bounces == 1
 
     def test_no_adaptive_sampling_is_no_threshold(self, scene, cycles):
         cycles.use_adaptive_sampling = False

@@ -32,7 +32,7 @@ class SceneChanges : public ::testing::Test {
 
   struct Expected {
     std::set<Id> meshes = {}, materials = {}, material_params = {}, images = {};
-    std::set<uint32_t> matrices = {};
+    std::set<uint32_t> matrices = {}, scales = {};
     bool instances = false, lights = false, world = false;
   };
   static void expect(const scene::Changes& c, const Expected& e) {
@@ -43,6 +43,7 @@ class SceneChanges : public ::testing::Test {
     EXPECT_EQ(c.material_params, e.material_params);
     EXPECT_EQ(c.images, e.images);
     EXPECT_EQ(c.instance_matrices, e.matrices);
+    EXPECT_EQ(c.instance_scales, e.scales);
     EXPECT_EQ(c.instances, e.instances);
     EXPECT_EQ(c.lights, e.lights);
     EXPECT_EQ(c.world, e.world);
@@ -119,11 +120,21 @@ TEST_F(SceneChanges, AMovedObjectTouchesItsMatrixAlone) {
   EXPECT_EQ(scene.instances()[0].object_to_world, glm::mat4(1));
 }
 
-TEST_F(SceneChanges, NewInstancesIncludeTheirMatrices) {
+TEST_F(SceneChanges, AnObjectsIndirectLightTouchesItsScaleAlone) {
+  const int index = 1;
+  const glm::vec2 scale(0.5f, 2);
+  expect(of([&] { scene.set_instance_scales({&index, 1}, {&scale, 1}); }), {.scales = {1}});
+  EXPECT_EQ(scene.instances()[1].indirect_scale, scale);
+  EXPECT_EQ(scene.instances()[0].indirect_scale, glm::vec2(1));
+}
+
+TEST_F(SceneChanges, NewInstancesIncludeTheirMatricesAndScales) {
   expect(of([&] {
            const int index = 0;
            const glm::mat4 matrix(2.0f);
+           const glm::vec2 scale(2);
            scene.set_instance_matrices({&index, 1}, {&matrix, 1});
+           scene.set_instance_scales({&index, 1}, {&scale, 1});
            scene.set_instances({{7, glm::mat4(1), 0}}, {3});
          }),
          {.instances = true});
@@ -155,6 +166,17 @@ TEST_F(SceneChanges, NonsenseIsRefusedAndChangesNothing) {
   expect_error([&] { scene.set_instance_matrices({&far, 1}, {&matrix, 1}); }, "instance 2");
   expect_error([&] { scene.set_instance_matrices({&below, 1}, {&matrix, 1}); }, "instance -1");
   expect_error([&] { scene.set_instance_matrices({&first, 1}, {}); }, "matrices");
+  const glm::vec2 scale(1);
+  expect_error([&] { scene.set_instance_scales({&far, 1}, {&scale, 1}); }, "instance 2");
+  expect_error([&] { scene.set_instance_scales({&first, 1}, {}); }, "scales");
+  for (const float bad : {-1.0f, 65505.0f, std::numeric_limits<float>::infinity(),
+                          std::numeric_limits<float>::quiet_NaN()}) {
+    const glm::vec2 wrong(1, bad);
+    expect_error([&] { scene.set_instance_scales({&first, 1}, {&wrong, 1}); }, "scale of");
+    scene::Instance instance{7, glm::mat4(1), 0};
+    instance.indirect_scale = wrong;
+    expect_error([&] { scene.set_instances({instance}, {3}); }, "scale of");
+  }
   expect_error([&] { scene.set_material_params(99, {}); }, "material 99");
   for (Id id : {Id(0), Id(-4)}) {
     expect_error([&] { scene.set_mesh(id, {}); }, "mesh");

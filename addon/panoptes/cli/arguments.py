@@ -88,7 +88,7 @@ def _add_scene_options(parser):
                         help='samples a pixel, or the range from A up to B, whose .exr can be merged '
                              'with others')
     parser.add_argument('--bounces', type=_count, metavar='N',
-                        help='reflections of indirect light')
+                        help='reflections of indirect light, by any method')
     parser.add_argument('--size', type=_size, metavar='WxH', help='pixels')
     parser.add_argument('--frame', type=_frame, metavar='N')
     parser.add_argument('--seed', type=_count, metavar='N')

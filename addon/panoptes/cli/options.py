@@ -15,6 +15,10 @@ def apply(options, scene):
         first, last, _ = options.samples
         _assign(settings, 'first_sample', str(first))
         _assign(settings, 'samples', str(last - first))
+    if options.bounces is not None:
+        # Real-time's own limit would come before one that is asked for.
+        cache = settings.radiance_cache
+        cache.bounces = min(options.bounces, cache.bl_rna.properties['bounces'].hard_max)
     for name in ('bounces', 'seed', 'time_budget', 'noise_threshold'):
         value = getattr(options, name)
         if value is not None:

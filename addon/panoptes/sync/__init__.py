@@ -178,4 +178,4 @@ class SceneSync:
         offsets = np.array(starts or [0], np.int32)
         mirror.put_instances(mesh_ids[found.mesh_index], found.matrices,
                              offsets[found.slot_index], np.array(table or [0], np.int64),
-                             found.visibility)
+                             found.visibility, found.indirect_scales)

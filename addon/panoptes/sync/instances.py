@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import compat
+from .. import compat, indirect_scale
 from . import lights, visibility
 
 
@@ -40,6 +40,7 @@ class InstanceList(NamedTuple):
     slot_sets: list            # tuples of material addresses (0 = none), without repetition
     slot_index: np.ndarray     # int32[N], into `slot_sets`
     visibility: np.ndarray     # uint8[N], bits of `visibility`
+    indirect_scales: np.ndarray  # float32[N, 2], what luminance and chrominance are multiplied by
     lights: list
 
     def slot_sets_by_geometry(self):
@@ -58,6 +59,7 @@ class _Place(NamedTuple):
     geometry: int = -1      # into the list of geometries
     slot_set: int = 0
     visibility: int = 0
+    indirect_scale: tuple = indirect_scale.NEUTRAL
 
 
 _NOTHING = _Place('')
@@ -129,12 +131,14 @@ class Walk:
         drawn = finite & (geometry >= 0)
         slot_index = np.array([place.slot_set for place in places], np.int32)[rows]
         bits = np.array([place.visibility for place in places], np.uint8)[rows]
+        scales = np.array([place.indirect_scale for place in places], np.float32)[rows]
         # By name, since each lamp has its own sequence of samples and Blender's order may change.
         shining = sorted(np.flatnonzero(finite & is_light), key=lambda row: places[rows[row]].name)
         found_lights = [lights.describe(places[rows[row]].light, matrices[row], self._warn)
                         for row in shining]
         return InstanceList(self._geometry, geometry[drawn], matrices[drawn],
-                            list(self._slot_sets), slot_index[drawn], bits[drawn], found_lights)
+                            list(self._slot_sets), slot_index[drawn], bits[drawn], scales[drawn],
+                            found_lights)
 
     def _place(self, instance, thing):
         """Return the `_Place` of an instance whose objects are met for the first time."""
@@ -160,7 +164,8 @@ class Walk:
         found = self._shape(instance, thing, maker)
         if found is None:
             return _NOTHING
-        return _Place(thing.name, geometry=found[0], slot_set=found[1], visibility=bits)
+        return _Place(thing.name, geometry=found[0], slot_set=found[1], visibility=bits,
+                      indirect_scale=indirect_scale.of_instance(thing, maker, self._warn))
 
     def _is_shown(self, thing):
         """Apply a 3D View's local view and its hidden collections.

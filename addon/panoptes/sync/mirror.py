@@ -109,22 +109,26 @@ class Mirror:
             self.engine.set_lights(lights)
             self._lights = mark
 
-    def put_instances(self, mesh_ids, matrices, offsets, table, visibility):
-        """Send instances: all of them if the list changed, else only matrices that did.
+    def put_instances(self, mesh_ids, matrices, offsets, table, visibility, indirect_scales):
+        """Send instances: all of them if the list changed, else only matrices and scales that did.
 
-        `visibility` is uint8[N] of the bits in shaders/scene/visibility_shared.h.
+        `visibility` is uint8[N] of the bits in shaders/scene/visibility_shared.h, `indirect_scales` is
+        float32[N, 2].
         """
         held = self._instances
         listed = (mesh_ids, offsets, table, visibility)
         same_list = held is not None and all(map(np.array_equal, held[0], listed))
         self._instances = None
         if not same_list:
-            self.engine.set_instances(mesh_ids, matrices, offsets, table, visibility)
+            self.engine.set_instances(mesh_ids, matrices, offsets, table, visibility, indirect_scales)
         else:
             moved = np.flatnonzero((held[1] != matrices).any(axis=(1, 2))).astype(np.int32)
             if len(moved):
                 self.engine.set_instance_matrices(moved, np.ascontiguousarray(matrices[moved]))
-        self._instances = (listed, matrices)
+            scaled = np.flatnonzero((held[2] != indirect_scales).any(axis=1)).astype(np.int32)
+            if len(scaled):
+                self.engine.set_instance_scales(scaled, np.ascontiguousarray(indirect_scales[scaled]))
+        self._instances = (listed, matrices, indirect_scales)
 
     def keep_only(self, meshes, materials, images):
         """Remove whatever is not in these sets of ids."""
