@@ -12,100 +12,20 @@ Few triangles, no textures: they are measured many times. The same script makes 
 """
 
 import math
-import random
 import sys
 from pathlib import Path
-
-import bpy
-from mathutils import Vector
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 import shapes  # noqa: E402
-from exhibits.gallery import plain, thing  # noqa: E402
-
-FRAMES = 60
-
-
-def boxes(name, material, corners):
-    """One object of boxes, each between two corners."""
-    shape = shapes.Shape()
-    for low, high in corners:
-        shape.box(low, high)
-    return shape.object(name, material)
-
-
-def turned_box(shape, middle, size, turn):
-    """Adds a box that stands on z = middle's, turned about its own upright axis."""
-    box = shapes.Shape()
-    box.box((-size[0] / 2, -size[1] / 2, 0.0), (size[0] / 2, size[1] / 2, size[2]))
-    cos, sin = math.cos(turn), math.sin(turn)
-    place = [(middle[0] + cos * x - sin * y, middle[1] + sin * x + cos * y, middle[2] + z) for x, y, z in box.vertices]
-    for face in range(6):
-        shape.face(place[4 * face:4 * face + 4], box.uvs[4 * face:4 * face + 4])
-
-
-def crates(name, material, stacks, seed):
-    """Stacks of crates at (x, y, how many), each turned a little from the one below."""
-    shape, dice = shapes.Shape(), random.Random(seed)
-    for x, y, count in stacks:
-        z = 0.0
-        for _ in range(count):
-            size = [dice.uniform(0.38, 0.55), dice.uniform(0.38, 0.5), dice.uniform(0.3, 0.48)]
-            turned_box(shape, (x + dice.uniform(-0.05, 0.05), y + dice.uniform(-0.05, 0.05), z), size, dice.uniform(-0.4, 0.4))
-            z += size[2]
-    return shape.object(name, material)
+from exhibits.gallery import plain  # noqa: E402
+from staging import boxes, camera, crates, lamp, move, save, start, turned_box, world  # noqa: E402
 
 
 def pipe(radius, height, segments=12):
     """An open upright tube."""
     return shapes.lathe([(radius, 0.0), (radius, height)], segments)
-
-
-def aim(made, target):
-    """Turns a lamp's or camera's -z to a point."""
-    made.rotation_euler = (Vector(target) - made.location).to_track_quat("-Z", "Y").to_euler()
-    return made
-
-
-def lamp(name, kind, energy, location, target, **settings):
-    light = bpy.data.lights.new(name, kind)
-    light.energy = energy
-    for key, value in settings.items():
-        setattr(light, key, value)
-    return aim(thing(name, light, location), target)
-
-
-def camera(location, target, lens):
-    data = bpy.data.cameras.new("camera")
-    data.lens = lens
-    made = aim(thing("camera", data, location), target)
-    bpy.context.scene.camera = made
-    return made
-
-
-def world(color, strength):
-    made = bpy.data.worlds.new("world")
-    made.use_nodes = True
-    background = made.node_tree.nodes["Background"]
-    background.inputs["Color"].default_value = (*color, 1.0)
-    background.inputs["Strength"].default_value = strength
-    bpy.context.scene.world = made
-
-
-def start():
-    """An empty file of 480x270 pixels."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 480, 270, 100
-    scene.view_settings.view_transform = "Filmic"
-    if hasattr(scene, "cycles"):
-        scene.render.engine = "CYCLES"
-        scene.cycles.samples, scene.cycles.seed = 64, 1
-        # Debian's Blender has no denoiser and refuses to render where one is asked for.
-        scene.cycles.use_denoising = False
-    return scene
 
 
 def make_confined():
@@ -168,16 +88,10 @@ def make_colonnade():
     lamp("sun", "SUN", 2.5, (5.0, -2.0, 8.0), (0.0, 2.5, 0.0), angle=math.radians(0.53))
     world((0.45, 0.65, 1.0), 0.5)
     made = camera((-1.5, -1.2, 1.5), (-1.2, 4.0, 0.5), 26.0)
-    scene.frame_start, scene.frame_end = 1, FRAMES
-    for frame, x in ((1, -1.5), (FRAMES, 1.5)):
-        made.location.x = x
-        made.keyframe_insert("location", index=0, frame=frame)
-    for key in made.animation_data.action.fcurves[0].keyframe_points:
-        key.interpolation = "LINEAR"
-    scene.frame_set(1)
+    move(made, "location", 1.5, 0)
     return scene
 
 
 for name, make in (("confined", make_confined), ("colonnade", make_colonnade)):
     make()
-    bpy.ops.wm.save_as_mainfile(filepath=str(HERE / f"{name}.blend"), compress=True)
+    save(HERE, name)

@@ -68,9 +68,9 @@ def main(arguments=None):
         print(json.dumps({**values, "kept": float(mask.mean()) if mask is not None else 1.0}))
     else:
         for name, value in values.items():
-            print(f"{name:14} {value:.6g}")
+            print(f"{name:16} {value:.6g}")
         if mask is not None:
-            print(f"{'pixels kept':14} {mask.mean():.1%}")
+            print(f"{'pixels kept':16} {mask.mean():.1%}")
     exceeded = [(name, values[name], most) for name, most in options.at_most if not values[name] <= most]
     for name, value, most in exceeded:
         print(f"{name} is {value:.6g}, above the {most:g} that is allowed.", file=sys.stderr)

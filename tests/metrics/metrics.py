@@ -10,6 +10,7 @@ import numpy as np
 
 import flip as flip_metric
 import images
+import perceptual
 
 # Keeps the relative MSE finite where the reference is black: a tenth of mid-grey, squared. Darker
 # pixels than that are weighed by their absolute error.
@@ -74,9 +75,16 @@ def flip(test, reference, mask=None):
     return float(errors.mean() if mask is None else errors[mask].mean())
 
 
+def perceptual_share(test, reference, mask=None):
+    """Share of the pixels that count which look different to an observer after Yee and Newman, 0..1."""
+    checked(test, reference, mask)
+    different = perceptual.seen(np.asarray(test), np.asarray(reference))
+    return float(different.mean() if mask is None else different[mask].mean())
+
+
 def all_metrics(test, reference, mask=None):
-    """Every metric by name, for float[H, W, 3]; FLIP and Lab are left out for what is not a colour (C != 3)."""
+    """Every metric by name, for float[H, W, 3]; those of colours are left out for what is none (C != 3)."""
     chosen = [relative_rmse, rmse, srgb_rmse, relative_mse]
     if np.shape(test)[-1] == 3:
-        chosen += [lab_rmse, flip]
+        chosen += [lab_rmse, flip, perceptual_share]
     return {metric.__name__: metric(test, reference, mask) for metric in chosen}

@@ -309,7 +309,7 @@ def test_the_command_prints_every_metric(pair, capsys):
     assert compare.main(pair[0] + ["--json"]) == 0
     values = json.loads(capsys.readouterr().out)
     assert values["relative_rmse"] == pytest.approx(0.1 / math.sqrt(2), rel=1e-5)
-    assert set(values) == {"relative_rmse", "rmse", "srgb_rmse", "relative_mse", "lab_rmse", "flip", "kept"}
+    assert set(values) == {"relative_rmse", "rmse", "srgb_rmse", "relative_mse", "lab_rmse", "flip", "perceptual_share", "kept"}
 
 
 def test_the_command_fails_where_a_bound_is_exceeded(pair, capsys):

@@ -6,13 +6,13 @@ compared is rendered by turns in one process, several times; the median counts, 
 not.
 """
 
-import statistics
-
 import numpy as np
+import stage
 import tables
 import variants
 from error import reduced, rmse
-from shots import Shots, our_scene
+from shots import Shots
+from stage import our_scene
 
 LADDER = (1, 2, 3, 4, 5, 7, 9, 11, 13, 15)
 RESOLUTIONS = (64, 128, 256, 512, 1024)
@@ -22,13 +22,9 @@ OCCLUSION, DRAWING = ("ambient_occlusion", "occlusion_"), ("occlusion_phantom_vi
 
 def by_turns(shots, options, distance, named):
     """{name: (the last Shot, median ms of the occlusion, median ms of drawing phantom views)} of named settings."""
-    shown, times = {}, {name: [] for name in named}
-    for turn in range(options.repeat + 1):
-        for name, settings in named.items():
-            shot = shown[name] = shots.estimate(options.samples, distance, **settings)
-            if turn:
-                times[name].append([shot.milliseconds(*which) / options.samples for which in (OCCLUSION, DRAWING)])
-    return {name: (shown[name], *(statistics.median(run[i] for run in runs) for i in (0, 1))) for name, runs in times.items()}
+    taken = stage.by_turns(named, lambda settings: shots.estimate(options.samples, distance, **settings), options.repeat)
+    return {name: (runs[-1], *(stage.median_milliseconds(runs, *which) / options.samples for which in (OCCLUSION, DRAWING)))
+            for name, runs in taken.items()}
 
 
 # --- init -----------------------------------------------------------------------------------------------------

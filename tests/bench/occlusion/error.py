@@ -8,7 +8,8 @@ the region that shadow maps cover. Both references are traced with the same rang
 import numpy as np
 import tables
 import variants
-from shots import Shots, our_scene, shared_scene
+from shots import Shots
+from stage import our_scene, shared_scene
 
 SCENES = ("sponza_crytek", "igea_deform", "colonnade", "confined")
 # The errors' own picture: grey is none, and so often enlarged.

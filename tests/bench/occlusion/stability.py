@@ -11,7 +11,8 @@ import bpy
 import numpy as np
 import tables
 import variants
-from shots import FARTHEST, Shots, our_scene
+from shots import FARTHEST, Shots
+from stage import our_scene
 
 # Points are taken from this many frames, spread over the animation, and from every third pixel each way.
 SOURCES, STRIDE = 5, 3

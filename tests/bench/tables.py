@@ -22,7 +22,7 @@ def show(title, rows, formats):
 
 
 def write(folder, name, pictures):
-    """Writes float[height, width] pictures (rows from the bottom, 0 to 1 as shown on the screen) side by side as a PNG."""
+    """Writes grey pictures, float[height, width], rows from the bottom, 0 to 1 as shown on the screen, side by side as a PNG."""
     if folder:
         row = np.concatenate(list(pictures), axis=1)[::-1]
         images.write_png(Path(folder) / f"{name}.png", images.srgb_to_linear(np.repeat(np.clip(row, 0.0, 1.0)[:, :, None], 3, axis=2)))

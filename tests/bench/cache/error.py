@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far the cache's light is from that of paths: the section error, for each encoding and number of bounces."""
+
+from pathlib import Path
+
+import images
+import judge
+import light
+import numpy as np
+import tables
+
+ENCODINGS = ("y3co1cg1", "y3co2cg2", "y3co3cg3", "rgb3", "y2co2cg2", "rgb2")
+
+
+def measure(path, options):
+    """All encodings and numbers of bounces on one scene."""
+    scene = light.Light(path, options.pixels)
+    colour, rows = scene.colour(), {}
+    for bounces in options.bounces:
+        paths, cycles = (trace(options.reference_samples, bounces) for trace in (scene.paths, scene.cycles))
+        rows[f"paths, {bounces} bounces"] = judge.floor(paths, cycles, colour)
+        shown = [(paths + cycles) / 2.0]
+        for encoding in options.encodings:
+            found = scene.cached(options.samples, bounces=bounces, encoding=encoding).passes["DiffInd"][:, :, :3].astype(np.float64)
+            rows[f"{encoding}, {bounces} bounces"] = judge.row(found, paths, cycles, colour)
+            shown.append(found)
+        write(options.pictures, f"error_{path.stem}_{bounces}", [picture * colour for picture in shown])
+    return {"scene": path.stem, "size": scene.size, "rows": rows}
+
+
+def write(folder, name, pictures):
+    """Writes linear pictures side by side, the reference first, as bright as that is looked at best."""
+    if folder:
+        gain = judge.exposure(pictures[0])
+        images.write_png(Path(folder) / f"{name}.png", gain * np.concatenate(pictures, axis=1)[::-1])
+
+
+def run(options):
+    """Measures and prints; returns what was found."""
+    found = []
+    for path in light.paths_of(options):
+        scene = measure(path, options)
+        found.append(scene)
+        tables.show(f"error: {scene['scene']}, {scene['size'][0]}x{scene['size'][1]}, {options.samples} samples of the film, references of "
+                    f"{options.reference_samples}", scene["rows"], judge.FORMATS)
+    return found
