@@ -38,6 +38,17 @@ def test_the_plain_closing_line_of_an_in_blender_run_counts_too(checkout):
     assert status == 0 and lines[-1] == CLOSING.format(7, 0, 1)
 
 
+def test_the_suite_in_blender_runs_beside_the_others_and_is_told_last(checkout):
+    """Each suite waits, 30 seconds at most, until the other has begun."""
+    python, blender = checkout.root / "python-runs", checkout.root / "blender-runs"
+    wait = "touch '{}'; timeout 30 bash -c 'until [[ -e $0 ]]; do sleep .1; done' '{}'"
+    status, lines = run_suites(
+        checkout, act=wait.format(blender, python) + " && echo '3 passed'",
+        tests=f"import subprocess\ndef test_a(): subprocess.run(['bash', '-c', {wait.format(python, blender)!r}], check=True)\n")
+    assert status == 0 and lines[-1] == CLOSING.format(4, 0, 0)
+    assert [line.split()[:2] for line in lines[:-1]] == [["sample", "1"], ["blender", "3"]]
+
+
 def test_a_failure_is_counted_and_its_log_shown(checkout):
     status, lines = run_suites(checkout, tests="def test_a(): assert 'apple' == 'pear'\ndef test_b(): pass\n",
                                act="echo '1 passed, 0 failed'")
