@@ -60,6 +60,12 @@ void LookUpOptions::add_defines(gl::ProgramSource& source) const {
   source.defines.push_back(fmt::format("CACHE_BLOCK {}", block));
 }
 
+gl::ProgramSource find_seeds_program() {
+  gl::ProgramSource source = compute("seeds of cells", "radiance_cache/find_seeds.comp");
+  add_volume(source);
+  return source;
+}
+
 gl::ProgramSource list_cells_program(bool dilate) {
   gl::ProgramSource source = compute("cells that hold light", "radiance_cache/list_cells.comp");
   source.defines = {fmt::format("DILATE {}", int(dilate))};

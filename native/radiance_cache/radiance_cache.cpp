@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace panoptes::radiance_cache {
 
@@ -47,46 +45,44 @@ void RadianceCache::begin(const Frame& frame) {
             plan::runs(frame.plan, "pass_glossdir") || plan::runs(frame.plan, "pass_glossind"));
   list_origin_ = frame.triangles.origin();
   grids_ = choose_grids(frame.scene.bounds(), frame.camera, settings_);
+  const glm::dvec3 high = grids_.back().low + grids_.back().cell * glm::dvec3(grids_.back().cells);
+  whole_ = glm::all(glm::lessThanEqual(grids_.back().low, glm::dvec3(frame.scene.bounds().low))) &&
+           glm::all(glm::greaterThanEqual(high, glm::dvec3(frame.scene.bounds().high)));
   volume_.update(grids_, settings_.voxel_fill, frame.triangles, frame.gpu, frame.view_block,
                  programs_, timer_);
   write_block(list_block_, list_origin_);
   list_cells();
   march();
-  if (getenv("RCDBG")) { printf("cells %d active %u solid %u layers %d grid %d %d %d cell %g bounces %d world %d lamps %d split %d\n", volume_.volumes().count.y, active_, volume_.solid(), 0, grids_[0].cells.x, grids_[0].cells.y, grids_[0].cells.z, grids_[0].cell, bounces_, world_light_, lamps_, split_); std::vector<uint32_t> m(size_t(active_)*settings_.directions); if (active_) met_.read(0, m.size()*4, m.data()); size_t lost=0, miss=0; for (auto x : m) { lost += x==0xfffffffeu; miss += x==0xffffffffu; } printf("rays %zu lost %zu miss %zu\n", m.size(), lost, miss); }
-  glm::ivec3 size(0);
-  for (const Grid& grid : grids_)
-    size = {std::max(size.x, grid.cells.x), std::max(size.y, grid.cells.y), size.z + grid.cells.z};
-  size.x *= split_ ? 2 : 1;
-  size.z *= cell_texels(settings_.encoding);
-  const gl::TextureOptions wanted{GL_TEXTURE_3D, GL_RGBA32F, size.x, size.y, size.z, 1};
-  if (!cells_ || cells_.options().width != size.x || cells_.options().height != size.y ||
-      cells_.options().layers != size.z) {
-    cells_ = gl::Texture();
-    cells_ = gl::Texture(wanted);
-  }
-  if (!linear_) linear_ = gl::Sampler(gl::SamplerOptions{});
+  const int64_t texels = int64_t(volume_.volumes().count.y) * cell_texels(settings_.encoding) *
+                         (split_ ? 2 : 1);
+  want(cells_, cells_texels_, GL_RGBA32F, texels * 16);
 }
 
 void RadianceCache::release() {
   runs_ = false;
   grids_.clear();
   volume_.release();
-  for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_}) *texture = gl::Texture();
-  for (gl::Buffer* buffer : {&list_, &met_, &radiosity_, &direct_, &list_block_, &view_block_})
+  for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_}) *texture = gl::Texture();
+  for (gl::Buffer* buffer : {&list_, &seeds_, &met_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_})
     *buffer = gl::Buffer();
 }
 
 void RadianceCache::list_cells() {
   gl::PassScope scope(timer_, "radiance_cache_cells");
-  const int64_t cells = volume_.volumes().count.y;
-  want(list_, cells * 4);
+  const uint32_t cells = uint32_t(volume_.volumes().count.y);
+  want(list_, int64_t(cells) * 4);
+  want(seeds_, seeds_texels_, GL_R32UI, int64_t(cells) * 4);
   gl::Buffer counter(4);
   counter.clear();
-  programs_.get(list_cells_program(settings_.dilate)).use();
+  programs_.get(find_seeds_program()).use();
   bind_volume();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
+  gl::dispatch(cells, GL_TEXTURE_FETCH_BARRIER_BIT);
+  programs_.get(list_cells_program(settings_.dilate)).use();
+  seeds_texels_.bind(0);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, counter.id());
-  gl::dispatch(uint32_t(cells), GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl::dispatch(cells, GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   counter.read(0, 4, &active_);
 }
 
@@ -117,6 +113,7 @@ void RadianceCache::march() {
   bind_lattice(1);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, met_.id());
+  seeds_texels_.bind(0);
   gl::dispatch(rays, GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
@@ -144,8 +141,7 @@ void RadianceCache::add_lamps(const Lamps& lamps) {
 }
 
 void RadianceCache::gather() {
-  const float none[4] = {0, 0, 0, 0};
-  glClearTexImage(cells_.id(), 0, GL_RGBA, GL_FLOAT, none);
+  cells_.clear();  // cells that are not listed hold no light
   if (active_ == 0) return;
   if (world_light_) gather_rays(false);
   for (int i = 0; i < bounces_; ++i) {
@@ -153,10 +149,9 @@ void RadianceCache::gather() {
     if (!cache && !lamps_) break;
     bounce(cache);
     gather_rays(true);
-  }
+    }
 }
 
-static void dump(const gl::Texture& t);
 void RadianceCache::bounce(bool cache) {
   gl::PassScope scope(timer_, cache ? "cache_bounces" : "cache_first_bounce");
   const uint32_t sides = volume_.solid() * 2;
@@ -166,15 +161,13 @@ void RadianceCache::bounce(bool cache) {
   programs_.get(bounce_program(options, lamps_, cache)).use();
   bind_volume();
   if (cache) {
-    cells_.bind(options.unit);
-    linear_.bind(options.unit);
+    cells_texels_.bind(options.unit);
     glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), list_block_.id());
   }
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, radiosity_.id());
   if (lamps_) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, direct_.id());
   glUniform1ui(0, sides);
   gl::dispatch(sides, GL_TEXTURE_FETCH_BARRIER_BIT);
-  glBindSampler(GLuint(options.unit), 0);
 }
 
 void RadianceCache::gather_rays(bool bounced) {
@@ -183,32 +176,21 @@ void RadianceCache::gather_rays(bool bounced) {
   met_texels_.bind(0);
   if (bounced) radiosity_texels_.bind(1);
   if (world_light_) world_->map(settings_.directions).bind(2);
-  cells_.bind_image(0, GL_WRITE_ONLY);
+  seeds_texels_.bind(3);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, cells_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, kCellsBlock, list_block_.id());
   glUniform3ui(0, active_, unsigned(settings_.directions), seed_);
   bind_lattice(1);
   gl::dispatch(active_, GL_TEXTURE_FETCH_BARRIER_BIT);
-  if (getenv("RCDBG")) dump(cells_);
-}
-
-[[maybe_unused]] static void dump(const gl::Texture& t) {
-  std::vector<float> v(size_t(t.options().width)*t.options().height*t.options().layers*4);
-  glGetTextureImage(t.id(), 0, GL_RGBA, GL_FLOAT, GLsizei(v.size()*4), v.data());
-  double sum=0, mx=0; for (float f : v) { sum += std::abs(f); mx = std::max(mx, double(std::abs(f))); }
-  printf("cells %dx%dx%d sum %g max %g\n", t.options().width, t.options().height, t.options().layers, sum, mx);
 }
 
 void RadianceCache::write_block(gl::Buffer& block, const glm::dvec3& origin) const {
   shared::CacheVolumes volumes = volume_.volumes();
-  int layers = 0;
-  for (size_t v = 0; v < grids_.size(); ++v) {
+  for (size_t v = 0; v < grids_.size(); ++v)
     volumes.volumes[v].low =
         glm::vec4(glm::vec3(grids_[v].low - origin), volumes.volumes[v].low.w);
-    volumes.volumes[v].first.w = layers;
-    layers += grids_[v].cells.z;
-  }
-  volumes.count.w = layers;
+  volumes.count.w = whole_;
   if (!block) block = gl::Buffer(int64_t(sizeof volumes));
   block.write(0, int64_t(sizeof volumes), &volumes);
 }
@@ -219,8 +201,7 @@ LookUpOptions RadianceCache::look_up(int unit, int block) const {
 
 void RadianceCache::bind(const LookUpOptions& options, const glm::dvec3& origin) {
   write_block(view_block_, origin);
-  cells_.bind(options.unit);
-  linear_.bind(options.unit);
+  cells_texels_.bind(options.unit);
   glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
 }
 

@@ -98,16 +98,16 @@ class RadianceCache {
   uint32_t seed_ = 0;
   WorldLight* world_ = nullptr;
   std::vector<Grid> grids_;
+  bool whole_ = false;  // the last of them holds the scene
   glm::dvec3 list_origin_{0};
   GeometryVolume volume_;
-  gl::Buffer list_, met_, radiosity_, direct_;
-  gl::Texture met_texels_, radiosity_texels_;
+  gl::Buffer list_, seeds_, met_, radiosity_, direct_, cells_;
+  gl::Texture seeds_texels_, met_texels_, radiosity_texels_, cells_texels_;
   gl::Buffer list_block_, view_block_;  // CacheVolumes about the list's origin, and about the camera
-  gl::Texture cells_;
-  gl::Sampler linear_;
   uint32_t active_ = 0;
 };
 
+gl::ProgramSource find_seeds_program();
 gl::ProgramSource list_cells_program(bool dilate);
 gl::ProgramSource march_program(int steps);
 struct GatherOptions {

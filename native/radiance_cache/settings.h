@@ -38,7 +38,9 @@ struct Settings {
   float voxel_fill = 0.75f;  // area of surface that makes a voxel solid, in faces of it, 0 .. 1
   Occupancy occupancy = Occupancy::kAuto;
   int depth_stride = 4;  // pixels between those that mark cells as seen, 1 .. 64
-  bool dilate = false;   // neighbours of occupied cells hold light too, as the thesis needs it
+  // Neighbours of occupied cells hold light too. Without, surfaces with their own cell behind them
+  // have none to look at.
+  bool dilate = true;
 
   // Of reflective shadow maps.
   int rsm_samples = 200;     // a lamp and cell, 1 .. 4096

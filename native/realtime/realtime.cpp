@@ -330,7 +330,6 @@ void Realtime::compose(const glm::vec3& origin, film::Film& film) {
   if (cache_.runs()) cache_.bind(*options.cache, glm::dvec3(origin));
   film.bind();
   dispatch_pixels();
-  glBindSampler(kCacheUnit, 0);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 

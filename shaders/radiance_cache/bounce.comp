@@ -26,7 +26,7 @@ void main() {
 #endif
 #if CACHE_LIGHT
   vec3 normal = unpack_unit(surfel.surface.x) * (front ? 1.0 : -1.0);
-  CacheLight light = cache_light(surfel.place.xyz, normal, banded_harmonics(normal, DIFFUSE_BANDS));
+  CacheLight light = cache_light(cache_radiance(surfel.place.xyz, normal), banded_harmonics(normal, DIFFUSE_BANDS));
   arriving += (light.world + light.bounced) * CACHE_PI;
 #endif
   radiosity[side] = pack_light(arriving * unpack_color(front ? surfel.surface.y : surfel.surface.z));

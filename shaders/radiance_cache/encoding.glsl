@@ -3,8 +3,7 @@
 //
 // A program defines RGB (0, 1) and the number of coefficients of luminance and of a chrominance,
 // LUMINANCE_TERMS and CHROMINANCE_TERMS (1, 4 or 9; of each colour, both the same). A cell has
-// CELL_TEXELS texels with the coefficients one after the other and then a weight, 1: textures filter
-// it with them, and what cells without light add is divided out again.
+// CELL_TEXELS texels with the coefficients one after the other and then its seed (cells.glsl).
 #include "base/spherical_harmonics.glsl"
 
 #define COEFFICIENTS (LUMINANCE_TERMS + 2 * CHROMINANCE_TERMS)
@@ -20,7 +19,7 @@ vec3 ycocg_from_rgb(vec3 c) {
 vec3 rgb_from_ycocg(vec3 c) { return vec3(c.x + c.y - c.z, c.x + c.z, c.x - c.y - c.z); }
 
 // The texels of a cell that radiance with these coefficients arrives at.
-vec4[CELL_TEXELS] encode(vec3 harmonics[9]) {
+vec4[CELL_TEXELS] encode(vec3 harmonics[9], float seed) {
   vec4 texels[CELL_TEXELS];
   for (int i = 0; i < CELL_TEXELS; ++i) texels[i] = vec4(0.0);
   for (int k = 0; k < LUMINANCE_TERMS; ++k) {
@@ -35,13 +34,12 @@ vec4[CELL_TEXELS] encode(vec3 harmonics[9]) {
       COEFFICIENT(texels, LUMINANCE_TERMS + CHROMINANCE_TERMS + k) = c.z;
     }
   }
-  COEFFICIENT(texels, COEFFICIENTS) = 1.0;
+  COEFFICIENT(texels, COEFFICIENTS) = seed;
   return texels;
 }
 
-// The sum over all harmonics of what is stored times `weights`; w: the share of cells that hold
-// light, 0: nothing is known. May be below 0 where harmonics ring.
-vec4 decode(vec4 texels[CELL_TEXELS], float weights[9]) {
+// The sum over all harmonics of what is stored times `weights`. May be below 0 where harmonics ring.
+vec3 decode(vec4 texels[CELL_TEXELS], float weights[9]) {
   vec3 sum = vec3(0.0);
   for (int k = 0; k < LUMINANCE_TERMS; ++k) {
     sum.x += COEFFICIENT(texels, k) * weights[k];
@@ -50,10 +48,8 @@ vec4 decode(vec4 texels[CELL_TEXELS], float weights[9]) {
       sum.z += COEFFICIENT(texels, LUMINANCE_TERMS + CHROMINANCE_TERMS + k) * weights[k];
     }
   }
-  float known = COEFFICIENT(texels, COEFFICIENTS);
-  sum *= known > 0.0 ? 1.0 / known : 0.0;
 #if !RGB
   sum = rgb_from_ycocg(sum);
 #endif
-  return vec4(sum, known);
+  return sum;
 }

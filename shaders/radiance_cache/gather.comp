@@ -3,48 +3,41 @@
 #include "base/invocation.glsl"
 #include "radiance_cache/cells.glsl"
 #include "radiance_cache/encoding.glsl"
+#include "radiance_cache/parts.glsl"
 #include "radiance_cache/rays.glsl"
 
-#if CACHE_SPLIT
-#define CACHE_PARTS 2
-#else
-#define CACHE_PARTS 1
-#endif
 
 layout(local_size_x = 64) in;
 layout(std140, binding = CACHE_BLOCK) uniform CacheBlock { CacheVolumes cached; };
 layout(std430, binding = 0) readonly buffer List { uint active_cells[]; };
+layout(std430, binding = 1) writeonly buffer Cells { vec4 cells[]; };  // look_up.glsl
 layout(binding = 0) uniform usamplerBuffer met;         // as march.comp writes it
-layout(binding = 1) uniform usamplerBuffer radiosity;   // of surfels: front, back; pack_light()
+layout(binding = 1) uniform usamplerBuffer radiosity;   // of surfels: front, back; as pack_light()
 layout(binding = 2) uniform sampler2D world_radiance;   // latitudes from +Z down, longitudes from +X
-layout(binding = 0, rgba32f) writeonly uniform image3D cells;
+layout(binding = 3) uniform usamplerBuffer seeds;
 layout(location = 0) uniform uvec3 counts;              // cells of the list, directions, seed
 layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];
 
-void store(Cell cell, int part, vec3 harmonics[9]) {
-  vec4 texels[CELL_TEXELS] = encode(harmonics);
-  ivec3 at = cell.at;
-  at.x += part * imageSize(cells).x / CACHE_PARTS;
-  at.z += cached.volumes[cell.volume].first.w;
-  for (int k = 0; k < CELL_TEXELS; ++k) imageStore(cells, at + ivec3(0, 0, k * cached.count.w), texels[k]);
+void store(uint first, vec3 harmonics[9], float seed) {
+  vec4 texels[CELL_TEXELS] = encode(harmonics, seed);
+  for (int k = 0; k < CELL_TEXELS; ++k) cells[first + uint(k)] = texels[k];
 }
 
 void main() {
   uint slot = invocation();
   if (slot >= counts.x) return;
-  Cell cell = cell_of(cached, active_cells[slot]);
+  uint number = active_cells[slot];
+  Cell cell = cell_of(cached, number);
   float turn = cell_turn(cell.at + lattice[cell.volume].xyz, counts.z);
   vec3 world[9], bounced[9];
   for (int i = 0; i < 9; ++i) world[i] = bounced[i] = vec3(0.0);
-  float looked = 0.0;
   for (uint k = 0u; k < counts.y; ++k) {
     uint hit = texelFetch(met, int(slot * counts.y + k)).x;
     vec3 direction = cache_direction(k, counts.y, turn);
     float basis[9] = spherical_harmonics(direction);
-    looked += hit != RAY_LOST ? 1.0 : 0.0;
     vec3 arriving = vec3(0.0);
 #if BOUNCED
-    if (hit < RAY_LOST) arriving = unpack_light(texelFetch(radiosity, int(hit)).x) / CACHE_PI;
+    if (hit != RAY_MISS) arriving = unpack_light(texelFetch(radiosity, int(hit)).x) / CACHE_PI;
 #endif
 #if CACHE_SPLIT
     for (int i = 0; i < 9; ++i) bounced[i] += arriving * basis[i];
@@ -56,13 +49,14 @@ void main() {
 #endif
     for (int i = 0; i < 9; ++i) world[i] += arriving * basis[i];
   }
-  float share = looked > 0.0 ? 4.0 * CACHE_PI / looked : 0.0;
+  float share = 4.0 * CACHE_PI / float(counts.y), seed = float(texelFetch(seeds, int(number)).x & SEED_CODE);
   for (int i = 0; i < 9; ++i) {
     world[i] *= share;
     bounced[i] *= share;
   }
-  store(cell, 0, world);
+  uint first = number * uint(CACHE_PARTS * CELL_TEXELS);
+  store(first, world, seed);
 #if CACHE_SPLIT
-  store(cell, 1, bounced);
+  store(first + uint(CELL_TEXELS), bounced, seed);
 #endif
 }

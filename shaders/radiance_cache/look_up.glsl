@@ -1,30 +1,33 @@
 // Light from the radiance cache at a point of a surface (thesis, section 5.3, "Irradiance
 // Reconstruction"). The volumes lie relative to the origin of the points.
+#include "radiance_cache/cells.glsl"
 #include "radiance_cache/encoding.glsl"
-#include "radiance_cache/volume_shared.h"
+#include "radiance_cache/parts.glsl"
 
 layout(std140, binding = CACHE_BLOCK) uniform CacheBlock { CacheVolumes cached; };
-// The cells of all volumes: x, y, z of the volume's own, volumes one behind the other along z; then
-// the same for each further texel of a cell, and along x, with CACHE_SPLIT, world and bounced light.
-layout(binding = CACHE_UNIT) uniform sampler3D cells;
-#if CACHE_SPLIT
-#define CACHE_PARTS 2
-#else
-#define CACHE_PARTS 1
-#endif
+// CELL_TEXELS texels for each part of a cell, cells by number.
+layout(binding = CACHE_UNIT) uniform samplerBuffer cells;
+
+// Radiance around a point, and how much of it is known.
+struct CacheRadiance {
+  vec4 parts[CACHE_PARTS * CELL_TEXELS];
+  float share;  // 1 within the volumes, 0 beyond their border
+};
 
 struct CacheLight {
   vec3 world;    // with CACHE_SPLIT: what came straight from the world; else 0
   vec3 bounced;  // with CACHE_SPLIT: what surfaces have sent on; else all
   float clipped; // what was cut off below 0, relative to the light
-  float share;   // 1 within the volumes, 0 beyond their border
 };
 
-// A point as far before a surface as its cells are not to be those behind it: half a cell.
+// A point as far before a surface, in cells, sees what the surface sees and is nearer to cells before it.
 const float CACHE_OFFSET = 0.5;
+// Cells whose seeds lie this far before a surface, in cells, count in full; from there on down to 0
+// less and less, those behind it not at all. Where nothing else is near, they are better than nothing.
+const float CACHE_BEFORE = 0.125, CACHE_LEAST = 1.0e-3;
 
-// The first volume in which `position` lies at least half a cell from the border; the last one if
-// there is none. `share`: 1 in it, falling to 0 over the last cell before the border of that.
+// The first volume in which `position` lies at least a cell from the border; the last one if there is
+// none. `share`: 1, but if that does not hold all of the scene it falls to 0 over its last cell.
 int volume_of(vec3 position, out float share) {
   for (int v = 0; v < cached.count.x; ++v) {
     CacheVolume volume = cached.volumes[v];
@@ -34,40 +37,57 @@ int volume_of(vec3 position, out float share) {
     share = clamp(least, 0.0, 1.0);
     if (least >= 1.0) return v;
   }
+  if (cached.count.w != 0) share = 1.0;
   return cached.count.x - 1;
 }
 
-vec4[CELL_TEXELS] fetch_cell(int v, vec3 position, int part) {
-  CacheVolume volume = cached.volumes[v];
-  vec3 at = clamp((position - volume.low.xyz) / volume.low.w, vec3(0.5),
-                  vec3(volume.cells.xyz) - 0.5);
-  vec3 size = vec3(textureSize(cells, 0));
-  at.x += float(part) * size.x / float(CACHE_PARTS);
-  at.z += float(volume.first.w);
-  vec4 texels[CELL_TEXELS];
-  for (int k = 0; k < CELL_TEXELS; ++k)
-    texels[k] = textureLod(cells, vec3(at.xy, at.z + float(k * cached.count.w)) / size, 0.0);
-  return texels;
+// What arrives at `position` on the side of a surface that faces `normal`.
+CacheRadiance cache_radiance(vec3 position, vec3 normal) {
+  CacheRadiance radiance;
+  CacheVolume volume = cached.volumes[volume_of(position, radiance.share)];
+  vec3 place = (position - volume.low.xyz) / volume.low.w;
+  vec3 at = clamp(place + normal * CACHE_OFFSET, vec3(0.5), vec3(volume.cells.xyz) - 0.5) - 0.5;
+  ivec3 corner = ivec3(at);
+  vec3 fraction = at - vec3(corner);
+  for (int k = 0; k < CACHE_PARTS * CELL_TEXELS; ++k) radiance.parts[k] = vec4(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    ivec3 step = ivec3(i & 1, i >> 1 & 1, i >> 2);
+    ivec3 cell = min(corner + step, volume.cells.xyz - 1);
+    vec3 parts = mix(1.0 - fraction, fraction, vec3(step));
+    int first = cell_number(volume, cell) * CACHE_PARTS * CELL_TEXELS;
+    vec4 last = texelFetch(cells, first + CELL_TEXELS - 1);
+    uint seed = uint(last[COEFFICIENTS % 4]);
+    float before = dot(vec3(cell) + seed_place(seed, volume.cells.w) - place, normal);
+    float weight = parts.x * parts.y * parts.z * clamp(before / CACHE_BEFORE, CACHE_LEAST, 1.0);
+    weight = seed == 0u ? 0.0 : weight;
+    weights += weight;
+    for (int k = 0; k < CACHE_PARTS * CELL_TEXELS; ++k)
+      radiance.parts[k] += weight * (k == CELL_TEXELS - 1 ? last : texelFetch(cells, first + k));
+  }
+  float scale = weights > 0.0 ? 1.0 / weights : 0.0;
+  for (int k = 0; k < CACHE_PARTS * CELL_TEXELS; ++k) radiance.parts[k] *= scale;
+  return radiance;
 }
 
-// Light at `position` on a surface that faces `normal`, by `weights` of the harmonics.
-CacheLight cache_light(vec3 position, vec3 normal, float weights[9]) {
-  float share;
-  int v = volume_of(position, share);
-  vec3 before = position + normal * (CACHE_OFFSET * cached.volumes[v].low.w);
+vec3 decode_part(CacheRadiance radiance, int part, float weights[9]) {
+  vec4 texels[CELL_TEXELS];
+  for (int k = 0; k < CELL_TEXELS; ++k) texels[k] = radiance.parts[part * CELL_TEXELS + k];
+  return decode(texels, weights);
+}
+
+// Its light by weights of the harmonics.
+CacheLight cache_light(CacheRadiance radiance, float weights[9]) {
   CacheLight light;
 #if CACHE_SPLIT
-  vec3 world = decode(fetch_cell(v, before, 0), weights).rgb;
-  vec3 bounced = decode(fetch_cell(v, before, 1), weights).rgb;
+  vec3 world = decode_part(radiance, 0, weights), bounced = decode_part(radiance, 1, weights);
 #else
-  vec3 world = vec3(0.0);
-  vec3 bounced = decode(fetch_cell(v, before, 0), weights).rgb;
+  vec3 world = vec3(0.0), bounced = decode_part(radiance, 0, weights);
 #endif
   light.world = max(world, vec3(0.0));
   light.bounced = max(bounced, vec3(0.0));
   vec3 cut = light.world - world + light.bounced - bounced;
   vec3 all = light.world + light.bounced;
-  light.share = share;
   light.clipped = (cut.r + cut.g + cut.b) / max(all.r + all.g + all.b, 1.0e-20);
   return light;
 }

@@ -10,9 +10,23 @@ layout(std430, binding = 1) writeonly buffer Met { uint met[]; };
 layout(location = 0) uniform uvec3 counts;     // cells of the list, directions, seed
 layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];  // xyz: of each volume's first cell
 
-// Tries to find an empty voxel of the cell to begin in; where rays begin inside of a solid voxel they
-// see nothing, and where they skip one they see through walls.
-const int TRIES = 8;
+layout(binding = 0) uniform usamplerBuffer seeds;
+
+// Tries to find a place in the cell that its seed sees; else a ray begins at the seed. Where rays
+// began inside of a solid voxel they would see nothing, and where they skipped one they would see
+// through walls.
+const int TRIES = 4;
+
+// Whether no solid voxel lies between two points, in voxels of the volume, at most a cell apart.
+bool sees(CacheVolume volume, vec3 from, vec3 to) {
+  vec3 way = to - from;
+  float reach = max(abs(way.x), max(abs(way.y), abs(way.z)));
+  int steps = int(ceil(2.0 * reach));
+  bool open = true;
+  for (int i = 1; i <= steps && open; ++i)
+    open = !voxel_is_solid(volume, ivec3(from + way * (float(i) / float(steps))));
+  return open;
+}
 
 void main() {
   uint ray = spread_invocation(64u);
@@ -26,27 +40,26 @@ void main() {
 
   uint random = hash(k + hash(floatBitsToUint(turn)));
   int side = volume.cells.w;
+  vec3 seed = vec3(cell.at * side) + vec3(seed_voxel(texelFetch(seeds, int(active_cells[slot])).x & SEED_CODE)) + 0.5;
+  vec3 start = seed;
   bool found = false;
-  vec3 start = vec3(0.0);
   for (int i = 0; i < TRIES && !found; ++i) {
     vec3 u;
     for (int axis = 0; axis < 3; ++axis) {
       random = hash(random);
       u[axis] = unit_float(random);
     }
-    start = (vec3(cell.at) + u) * float(side);
-    found = !voxel_is_solid(volume, ivec3(start));
+    vec3 place = (vec3(cell.at) + u) * float(side);
+    found = sees(volume, seed, place);
+    if (found) start = place;
   }
-  uint result = RAY_LOST;
-  if (found) {
-    March m = march(volume.low.xyz + start * voxel_size(volume), direction, cell.volume,
-                    unit_float(hash(random)));
-    result = RAY_MISS;
-    if (m.hit) {
-      uint surfel = surfel_of(cache.volumes[m.volume], m.voxel);
-      vec3 normal = unpack_unit(fetch_surfel(surfel).surface.x);
-      result = 2u * surfel + (dot(normal, direction) > 0.0 ? 1u : 0u);
-    }
+  March m = march(volume.low.xyz + start * voxel_size(volume), direction, cell.volume,
+                  unit_float(hash(random)));
+  uint result = RAY_MISS;
+  if (m.hit) {
+    uint surfel = surfel_of(cache.volumes[m.volume], m.voxel);
+    vec3 normal = unpack_unit(fetch_surfel(surfel).surface.x);
+    result = 2u * surfel + (dot(normal, direction) > 0.0 ? 1u : 0u);
   }
   met[ray] = result;
 }

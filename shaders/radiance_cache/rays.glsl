@@ -1,9 +1,8 @@
 // The directions that cells look in, and what they have met there.
 #include "base/packing.glsl"
 
-// What a ray has met: a surfel's number times two, plus one for its back; or one of these.
-const uint RAY_MISS = 0xffffffffu;  // it has left the scene
-const uint RAY_LOST = 0xfffffffeu;  // its cell has no room for it to begin in
+// What a ray has met: a surfel's number times two, plus one for its back; or nothing.
+const uint RAY_MISS = 0xffffffffu;
 
 const float CACHE_PI = 3.14159265359;
 

@@ -12,8 +12,7 @@ struct CacheVolume {
   vec4 low;     // xyz: lowest corner, m, relative to the origin of positions; w: a cell's side, m
   ivec4 cells;  // xyz: cells along each axis; w: voxels along a cell's side
   ivec4 first;  // x: words of a row of voxels along x, 32 voxels each; y: the first word of this
-                // volume; z: its first cell, in the numbers of all volumes' cells; w: cells along z
-                // of the volumes before it
+                // volume; z: its first cell, in the numbers of all volumes' cells
 };
 SHARED_ASSERT_SIZE(CacheVolume, 48)
 
@@ -21,7 +20,8 @@ SHARED_ASSERT_SIZE(CacheVolume, 48)
 
 struct CacheVolumes {
   CacheVolume volumes[MOST_CASCADES];
-  ivec4 count;  // x: volumes; y: cells of all; z: solid voxels of all; w: cells along z of all
+  ivec4 count;  // x: volumes; y: cells of all; z: solid voxels of all; w: 1: the last volume holds
+                // all of the scene
 };
 SHARED_ASSERT_SIZE(CacheVolumes, 48 * MOST_CASCADES + 16)
 

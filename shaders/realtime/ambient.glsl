@@ -24,31 +24,46 @@ vec3 open_world(float weights[9]) {
 vec3 open_world(float weights[9]) { return vec3(0.0); }
 #endif
 
-// Light at `position` on the side of a surface that faces `normal`, by weights of the harmonics.
-Ambient ambient(vec3 position, vec3 normal, float weights[9]) {
 #if RADIANCE_CACHE
-  CacheLight light = cache_light(position, normal, weights);
-  // Beyond the border of the volumes nothing is known but the world.
-  vec3 open = open_world(weights) * (1.0 - light.share);
-#if CACHE_SPLIT
-  return Ambient(open + light.world * light.share, light.bounced * light.share, light.clipped);
+#define Around CacheRadiance
 #else
-  return Ambient(vec3(0.0), open + light.bounced * light.share, light.clipped);
+struct Around { float share; };  // the world's light is the same everywhere
+#endif
+
+// What arrives at `position` on the side of a surface that faces `normal`.
+Around look_around(vec3 position, vec3 normal) {
+#if RADIANCE_CACHE
+  return cache_radiance(position, normal);
+#else
+  return Around(0.0);
+#endif
+}
+
+// Light of it by weights of the harmonics.
+Ambient ambient(Around around, float weights[9]) {
+  // Beyond the border of the volumes nothing is known but the world.
+  vec3 open = open_world(weights) * (1.0 - around.share);
+#if RADIANCE_CACHE
+  CacheLight light = cache_light(around, weights);
+#if CACHE_SPLIT
+  return Ambient(open + light.world * around.share, light.bounced * around.share, light.clipped);
+#else
+  return Ambient(vec3(0.0), open + light.bounced * around.share, light.clipped);
 #endif
 #else
-  return Ambient(open_world(weights), vec3(0.0), 0.0);
+  return Ambient(open, vec3(0.0), 0.0);
 #endif
 }
 
 // What a white diffuse surface there sends back; `open` is the mean direction in which it is open.
-Ambient ambient_diffuse(vec3 position, vec3 normal, vec3 open) {
-  return ambient(position, normal, banded_harmonics(open, DIFFUSE_BANDS));
+Ambient ambient_diffuse(Around around, vec3 open) {
+  return ambient(around, banded_harmonics(open, DIFFUSE_BANDS));
 }
 
 // Radiance from `direction`, as a rough mirror sees it: a lobe of GGX's width takes from band l about
 // exp(-(l alpha)^2 / 4).
-Ambient ambient_radiance(vec3 position, vec3 normal, vec3 direction, float roughness) {
+Ambient ambient_radiance(Around around, vec3 direction, float roughness) {
   float alpha = roughness * roughness, lobe = exp(-0.25 * alpha * alpha);
   float squared = lobe * lobe;
-  return ambient(position, normal, banded_harmonics(direction, vec3(1.0, lobe, squared * squared)));
+  return ambient(around, banded_harmonics(direction, vec3(1.0, lobe, squared * squared)));
 }

@@ -75,7 +75,8 @@ void main() {
   float size = length(open);
   open = size > 1.0e-3 ? open / size : g.normal;
 #endif
-  Ambient around = ambient_diffuse(g.position, g.geometric_normal, open);
+  Around here = look_around(g.position, g.geometric_normal);
+  Ambient around = ambient_diffuse(here, open);
   vec3 sent = visible * g.diffuse * diffuse_albedo(g.diffuse_roughness, nv);
 #if LAYERS
   sent += visible * g.sheen * sheen_albedo(g.sheen_roughness, nv);
@@ -84,14 +85,14 @@ void main() {
   diffuse_bounced += sent * around.bounced;
   // Reflected and refracted light from blurred radiance, where no ray is traced.
 #if GLOSSY
-  Ambient mirrored = ambient_radiance(g.position, g.geometric_normal, reflect(-v, g.normal), g.roughness);
+  Ambient mirrored = ambient_radiance(here, reflect(-v, g.normal), g.roughness);
   vec3 reflected = environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
                    specular_visibility(visible, g.roughness, nv);
   glossy += reflected * mirrored.world;
   glossy_bounced += reflected * mirrored.bounced;
 #if LAYERS
   float coat_nv = max(dot(g.coat_normal, v), 0.0), coat_roughness = abs(g.coat_roughness);
-  mirrored = ambient_radiance(g.position, g.geometric_normal, reflect(-v, g.coat_normal), coat_roughness);
+  mirrored = ambient_radiance(here, reflect(-v, g.coat_normal), coat_roughness);
   reflected = environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
                                       coat_roughness, coat_nv) *
               specular_visibility(visible, coat_roughness, nv);
@@ -100,7 +101,7 @@ void main() {
 #endif
 #endif
 #if TRANSMISSION
-  Ambient behind = ambient_radiance(g.position, -g.geometric_normal, -v, g.transmission_roughness);
+  Ambient behind = ambient_radiance(look_around(g.position, -g.geometric_normal), -v, g.transmission_roughness);
   transmitted = g.transmission * behind.world;
   transmitted_bounced = g.transmission * behind.bounced;
 #endif

@@ -256,6 +256,7 @@ class Shaders : public ::testing::Test {
             add(radiance_cache::gather_program({cache.encoding, split, world, bounced}));
       }
     add(radiance_cache::bounce_program({}, true, false));
+    add(radiance_cache::find_seeds_program());
     for (bool either : {false, true}) {
       add(radiance_cache::list_cells_program(either));
       add(radiance_cache::march_program(either ? 12 : 0));
