@@ -5,7 +5,7 @@
 
 Takes jobs from standard input, the path of a JSON file a line, until it ends. A job: {"scene": path of a .blend, "builder:NAME" or "nodes:GROUP", "lamps_alone": bool, "size": [width, height] or null,
 "renders": [{"engine": "CYCLES" or "PANOPTES", "out": path, "samples": n, "shadows": bool, "seed": n,
-"lamp": index of the only lamp that shines, or null for all, "method": of Panoptes or null}]}. Lamps are counted in the order of their names.
+"lamp": index of the only lamp that shines, or null for all, "method": of Panoptes or null, "bounces": of indirect light or null}]}. Lamps are counted in the order of their names.
 A job's scene is loaded once; nothing is ever saved over it. Prints "lamps: N" after each job. What a job leaves behind
 (Panoptes' compiled programs) makes the next one faster.
 """
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 # Every pass that both engines have.
-PASSES = ("combined", "z", "normal", "diffuse_color", "diffuse_direct", "emit", "environment")
+PASSES = ("combined", "z", "normal", "diffuse_color", "diffuse_direct", "diffuse_indirect", "emit", "environment")
 
 
 def lamps_alone():
@@ -86,6 +86,8 @@ def use_cycles(scene, render, direct_only):
     cycles.light_sampling_threshold = 0.0
     if direct_only:
         cycles.max_bounces = 0
+    elif render["bounces"] is not None:
+        cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = render["bounces"]
     for light in bpy.data.lights:
         light.use_shadow = render["shadows"]
         if hasattr(light.cycles, "cast_shadow"):  # Cycles' own switch, until Blender 4.2
@@ -104,6 +106,8 @@ def use_panoptes(scene, render):
         scene.panoptes.ambient_occlusion.strength = 0.0
     if render["samples"]:
         scene.panoptes.samples = render["samples"]
+    if render["bounces"] is not None:
+        scene.panoptes.bounces = scene.panoptes.radiance_cache.bounces = render["bounces"]
     if render["method"]:
         from panoptes import passes
         scene.panoptes.method, scene.panoptes.seed = render["method"], render["seed"]

@@ -68,13 +68,14 @@ def _key(scene, request):
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def picture(engine, samples=None, shadows=True, seed=1, lamp=None, method=None):
+def picture(engine, samples=None, shadows=True, seed=1, lamp=None, method=None, bounces=None):
     """One entry of a list for `render`.
 
     seed: of Cycles, and of Panoptes with a method. lamp: the index of the only lamp that shines, None for all.
-    method: of Panoptes, with every pass that it fills; None keeps the file's own settings.
+    method: of Panoptes, with every pass that it fills; None keeps the file's own settings. bounces: of indirect light, of
+    all kinds; None keeps the file's own.
     """
-    return {"engine": engine, "samples": samples, "shadows": shadows, "seed": seed, "lamp": lamp, "method": method}
+    return {"engine": engine, "samples": samples, "shadows": shadows, "seed": seed, "lamp": lamp, "method": method, "bounces": bounces}
 
 
 def render(name, pictures, lamps_alone=False, size=None):
