@@ -11,21 +11,6 @@ float diffuse_lobe(float roughness, vec3 n, vec3 v, vec3 l) {
                       dot(l, half_vector(n, v, l)));
 }
 
-// Share of white light from everywhere that the diffuse lobe sends back. Oren and Nayar's is exact;
-// Burley's is a fit to its quadrature, off by at most 2.5 %.
-float diffuse_albedo(float roughness, float nv) {
-  nv = clamp(nv, 1.0e-3, 1.0);
-  if (roughness < 0.0) {
-    float r = -1.0 - roughness;
-    float sine = sqrt(1.0 - nv * nv);
-    float g = sine * (acos(nv) - sine * nv) +
-              2.0 / 3.0 * (sine / nv * (1.0 - sine * sine * sine) - sine);
-    return (PI + r * g) / (PI + (0.5 * PI - 2.0 / 3.0) * r);
-  }
-  float grazing = fifth_power(1.0 - nv);
-  return mix(0.976 - 0.488 * grazing, 1.035 + 0.55 * grazing, roughness);
-}
-
 // GGX with height-correlated Smith masking (Heitz 2014), before Fresnel's term.
 float ggx_lobe(float alpha, vec3 n, vec3 v, vec3 l) {
   float a2 = alpha * alpha;
@@ -44,8 +29,6 @@ vec3 glossy_lobe(vec3 f0, vec3 f90, float ior, float roughness, vec3 n, vec3 v, 
   float rise = fresnel_rise(dot(l, half_vector(n, v, l)), ior);
   return mix(f0, f90, rise) * ggx_lobe(alpha_from_roughness(roughness), n, v, l);
 }
-
-const float COAT_IOR = 1.5;
 
 // A clear coat: GGX; or, where roughness is negative, that of Disney's BRDF as Cycles has it before
 // 4.0 (Burley 2012: GTR1, masked as if of roughness .25 squared).

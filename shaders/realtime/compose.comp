@@ -4,7 +4,7 @@
 #include "rasterize/g_buffer.glsl"
 #include "base/albedo.glsl"
 #include "realtime/brdf.glsl"
-#include "realtime/spherical_harmonics.glsl"
+#include "rasterize/world_light.glsl"
 #include "film/film.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -30,19 +30,6 @@ layout(location = 3) uniform float deep_strength;
 #endif
 #endif
 #if WORLD_LIGHT
-// Coefficients of the world's radiance.
-layout(std140, binding = 1) uniform WorldBlock { vec4 world[9]; };
-
-// Irradiance on a plane that faces `n`, divided by pi: what a white diffuse surface sends back.
-vec3 world_diffuse(vec3 n) {
-  const float band[3] = float[3](1.0, 2.0 / 3.0, 0.25);
-  float basis[9] = spherical_harmonics(n);
-  vec3 sum = vec3(0.0);
-  for (int k = 0; k < 9; ++k)
-    sum += world[k].rgb * basis[k] * band[k == 0 ? 0 : (k < 4 ? 1 : 2)];
-  return max(sum, vec3(0.0));
-}
-
 #if OCCLUSION
 // Share of reflected light that comes past what occludes the surface (Lagarde and de Rousiers 2014).
 float specular_visibility(float visible, float roughness, float nv) {

@@ -1,7 +1,7 @@
 // Projects the world's radiance onto the first nine spherical harmonics: each work group adds up a
 // part of the sphere's directions (texel centres of an equirectangular map); the host adds groups.
 #include "gpu_scene/world.glsl"
-#include "realtime/spherical_harmonics.glsl"
+#include "base/spherical_harmonics.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 5) writeonly buffer Sums { vec4 sums[]; };  // nine a work group
