@@ -44,7 +44,8 @@ gl::ProgramSource direct_light_program(const LightOptions& options) {
   source.name = "direct light";
   source.stages = {{GL_COMPUTE_SHADER, "realtime/direct_light.comp"}};
   source.defines = {fmt::format("SHADOWS {}", int(options.shadows)),
-                    fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae))};
+                    fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae)),
+                    fmt::format("SPECULAR_RAYS {}", int(options.specular_rays))};
   options.surfaces.add_defines(source);
   return source;
 }
@@ -58,7 +59,8 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
                     fmt::format("WORLD_LIGHT {}", int(options.world_light)),
                     fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film)),
                     fmt::format("OCCLUSION {}", int(options.occlusion)),
-                    fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows))};
+                    fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows)),
+                    fmt::format("SPECULAR_RAYS {}", int(options.specular_rays))};
   options.surfaces.add_defines(source);
   film.add_defines(source);
   return source;
@@ -119,6 +121,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   want(environment_, background_, width, height);
   if (!shadows_) shadow_maps_.release();
   occlusion_.begin(camera, settings.occlusion, plan, settings.seed);
+  specular_rays_.begin(camera, plan, settings.specular_rays, settings.seed);
   if (!emissive_light_) {
     emitters_.clear();
     emitter_revision_ = -1;
@@ -188,8 +191,9 @@ shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
 }
 
 void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
-                             const gpu_scene::GpuScene& gpu, film::Film& film,
+                             const Surroundings& around, film::Film& film,
                              const std::atomic<bool>& cancelled) {
+  const gpu_scene::GpuScene& gpu = around.scene;
   if (index == first && first > 0 && (cascades_ || occlusion_.undecided()))
     look_at_first_sample(sharing, gpu, cancelled);
   const shared::View view = sample_view(index, sharing);
@@ -208,6 +212,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
+  if (specular_rays_.runs() && !shows_occlusion()) trace_specular(index, view, around, cancelled);
   if (lamps_)
     add_lamps(index, view, gpu, cancelled);
   else
@@ -224,10 +229,19 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
     stop_if(cancelled);
   }
 
-  if (settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs())
+  if (world_light_) specular_rays_.add_surroundings(world_block_);
+  if (shows_occlusion())
     show_picture(film);
   else
     compose(film);
+}
+
+void Realtime::trace_specular(uint32_t index, const shared::View& view, const Surroundings& around,
+                              const std::atomic<bool>& cancelled) {
+  specular_rays_.trace({index, view, g_buffer_, around.scene, *around.tracer, *around.triangles,
+                        view_block_},
+                       cancelled);
+  view_block_.set(view);
 }
 
 void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
@@ -288,7 +302,7 @@ void Realtime::show_picture(film::Film& film) {
 void Realtime::compose(film::Film& film) {
   gl::PassScope scope(timer_, "compose");
   const ComposeOptions options{lamps_, background_, world_light_, settings_.transparent_film,
-                               occlusion_.runs(), deep_shadows_, surfaces_};
+                               occlusion_.runs(), deep_shadows_, specular_rays_.runs(), surfaces_};
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();
@@ -303,6 +317,10 @@ void Realtime::compose(film::Film& film) {
       occlusion_.deep_shadows().bind(5);
       glUniform1f(3, settings_.occlusion.deep_shadows);
     }
+  }
+  if (specular_rays_.runs()) {
+    specular_rays_.direct().bind(6);
+    specular_rays_.indirect().bind(13);
   }
   if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_block_.id());
   film.bind();
@@ -384,12 +402,14 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     if (&batch == &set.batches.front())
       find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
     gl::PassScope scope(timer_, "direct_light");
-    programs_.get(direct_light_program({shadows_, filtered_, surfaces_})).use();
+    const bool rays = specular_rays_.runs() && emissive_light_;
+    programs_.get(direct_light_program({shadows_, filtered_, rays, surfaces_})).use();
     g_buffer_.bind_bins();
     g_buffer_.bind_surfaces();
     if (shadows_) shadow_maps_.bind(13);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, lights_buffer_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, faces_buffer_.id());
+    if (rays) specular_rays_.direct().bind(6);
     diffuse_light_.bind(0);
     diffuse_light_.bind_image(0, GL_WRITE_ONLY);
     if (surfaces_.glossy) glossy_light_.bind(1);
@@ -398,6 +418,8 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     glUniform1ui(3, batch.light_count);
     g_buffer_.dispatch_surfaces();
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    if (specular_rays_.runs())
+      specular_rays_.add_lamps(batch.first_light, batch.light_count, {shadows_, filtered_});
     stop_if(cancelled);
   }
 }

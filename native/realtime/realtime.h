@@ -1,6 +1,6 @@
-// Integrator 1: composes direct light and the world's light, as far as it is not occluded nearby, into
-// a frame, sample by sample. Until the radiance cache joins it, light that has left a first surface is
-// missing, and glass and mirrors see the blurred world.
+// Integrator 1: composes direct light, the world's light, as far as it is not occluded nearby, and what
+// rays find for mirrors and glass into a frame, sample by sample. Until the radiance cache joins it,
+// light that has left a first diffuse surface is missing.
 #pragma once
 
 #include "ambient_occlusion/occlusion.h"
@@ -18,6 +18,7 @@
 #include "rasterize/shadow_maps.h"
 #include "rasterize/sun_cascades.h"
 #include "scene/scene.h"
+#include "specular_rays/specular_rays.h"
 
 #include <atomic>
 #include <functional>
@@ -27,6 +28,7 @@ namespace panoptes::realtime {
 struct Settings {
   rasterize::ShadowSettings shadows;
   ambient_occlusion::Settings occlusion;
+  specular_rays::Settings specular_rays;
   uint32_t seed = 0;
   bool transparent_film = false;  // the world behind the scene is not part of Combined
   float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
@@ -35,12 +37,13 @@ struct Settings {
 // Programs of this integrator, for the frame and for the shader validation.
 struct LightOptions {
   bool shadows = false, filtered_penumbrae = false;
+  bool specular_rays = false;  // glowing surfaces are seen by rays
   rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
   bool lamps = false, background = false, world_light = false, transparent_film = false;
-  bool occlusion = false, deep_shadows = false;
+  bool occlusion = false, deep_shadows = false, specular_rays = false;
   rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film);
@@ -48,10 +51,19 @@ gl::ProgramSource depth_program(const film::Film& film);
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world);
 gl::ProgramSource world_project_program(const gpu_scene::GpuShading& world);
 
+// What a frame shows, as the scene is now. Tracer and triangles are null where the plan runs nothing
+// that follows rays.
+struct Surroundings {
+  const gpu_scene::GpuScene& scene;
+  const tracing::Tracer* tracer = nullptr;
+  const tracing::TriangleList* triangles = nullptr;
+};
+
 class Realtime {
  public:
   Realtime(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
-      : device_(device), programs_(programs), timer_(timer), occlusion_(programs, timer) {}
+      : device_(device), programs_(programs), timer_(timer), occlusion_(programs, timer),
+        specular_rays_(programs, timer) {}
 
   // Prepares for a frame: allocates what the plan runs and releases what it does not. `single` says
   // that the frame has one sample only.
@@ -60,9 +72,10 @@ class Realtime {
 
   // Adds sample `index` of a frame that begins with sample `first` to the film; `sharing` samples
   // share a pixel's footprint. Throws Cancelled when `cancelled` says so.
-  void render_sample(uint32_t index, uint32_t first, uint32_t sharing,
-                     const gpu_scene::GpuScene& gpu, film::Film& film,
-                     const std::atomic<bool>& cancelled);
+  void render_sample(uint32_t index, uint32_t first, uint32_t sharing, const Surroundings& around,
+                     film::Film& film, const std::atomic<bool>& cancelled);
+  // Rays since begin().
+  int64_t rays() const { return specular_rays_.rays(); }
 
   // Writes into the frame's plan what was only found while it ran.
   void amend(plan::Effects& plan) const { occlusion_.amend(plan); }
@@ -89,6 +102,13 @@ class Realtime {
   // While the maps of the first batch of `lights` (none: no lamps) are there.
   void find_occlusion(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
                       const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
+  // Follows rays from mirrors and glass, before lamps light what they meet.
+  void trace_specular(uint32_t index, const shared::View& view, const Surroundings& around,
+                      const std::atomic<bool>& cancelled);
+  // Whether occlusion is shown in place of the scene.
+  bool shows_occlusion() const {
+    return settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs();
+  }
   void show_picture(film::Film& film);
   void compose(film::Film& film);
   void add_lamps(uint32_t index, const shared::View& view,
@@ -114,6 +134,7 @@ class Realtime {
   int64_t emitter_revision_ = -1;
   rasterize::ShadowMaps shadow_maps_;
   ambient_occlusion::AmbientOcclusion occlusion_;
+  specular_rays::SpecularRays specular_rays_;
   std::vector<scene::Bounds> sun_cascades_;
   int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
   int shadow_resolution_ = 0;

@@ -5,6 +5,7 @@
 #include "base/albedo.glsl"
 #include "realtime/brdf.glsl"
 #include "rasterize/world_light.glsl"
+#include "specular_rays/path_shared.h"
 #include "film/film.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -29,6 +30,12 @@ layout(binding = 5) uniform sampler2D deep;  // w: visibility
 layout(location = 3) uniform float deep_strength;
 #endif
 #endif
+#if SPECULAR_RAYS
+// What rays bring, scattered once (a: FOLLOWS and LEFT_BY_REFRACTION bits) and more often.
+layout(binding = 6) uniform sampler2D traced_direct;
+layout(binding = 13) uniform sampler2D traced_indirect;
+#endif
+
 #if WORLD_LIGHT
 #if OCCLUSION
 // Share of reflected light that comes past what occludes the surface (Lagarde and de Rousiers 2014).
@@ -48,6 +55,12 @@ void main() {
   vec3 v = -view_direction(vec2(pixel) + 0.5);
 
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0), emitted = vec3(0.0), background = vec3(0.0);
+  vec3 transmitted = vec3(0.0), glossy_indirect = vec3(0.0), transmitted_indirect = vec3(0.0);
+  uint followed = 0u;  // lobes that a ray stands for
+#if SPECULAR_RAYS
+  vec4 traced = texelFetch(traced_direct, pixel, 0);
+  followed = uint(traced.a);
+#endif
 #if LAMPS
   diffuse = texelFetch(diffuse_light, pixel, 0).rgb;
 #if GLOSSY
@@ -72,23 +85,33 @@ void main() {
 #endif
   vec3 world_over = visible * world_diffuse(open);
   diffuse += g.diffuse * diffuse_albedo(g.diffuse_roughness, nv) * world_over;
-  // Reflected and refracted light of the world from its blurred radiance, until rays are traced.
+  // Reflected and refracted light of the world from its blurred radiance where no ray stands for it.
 #if GLOSSY
-  glossy += environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
-            world_diffuse(reflect(-v, g.normal)) * specular_visibility(visible, g.roughness, nv);
+  if ((followed & FOLLOWS_SPECULAR) == 0u)
+    glossy += environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
+              world_diffuse(reflect(-v, g.normal)) * specular_visibility(visible, g.roughness, nv);
 #endif
 #if LAYERS
   diffuse += g.sheen * sheen_albedo(g.sheen_roughness, nv) * world_over;
 #if GLOSSY
-  glossy += environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
-                                    abs(g.coat_roughness), max(dot(g.coat_normal, v), 0.0)) *
-            world_diffuse(reflect(-v, g.coat_normal)) *
-            specular_visibility(visible, abs(g.coat_roughness), nv);
+  if ((followed & FOLLOWS_COAT) == 0u)
+    glossy += environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
+                                      abs(g.coat_roughness), max(dot(g.coat_normal, v), 0.0)) *
+              world_diffuse(reflect(-v, g.coat_normal)) *
+              specular_visibility(visible, abs(g.coat_roughness), nv);
 #endif
 #endif
-  vec3 transmitted = g.transmission * world_diffuse(-v);
-#else
-  vec3 transmitted = vec3(0.0);
+  if ((followed & FOLLOWS_TRANSMISSION) == 0u) transmitted = g.transmission * world_diffuse(-v);
+#endif
+#if SPECULAR_RAYS
+  vec3 indirect = texelFetch(traced_indirect, pixel, 0).rgb;
+  if ((followed & LEFT_BY_REFRACTION) != 0u) {
+    transmitted += traced.rgb;
+    transmitted_indirect = indirect;
+  } else if (followed != 0u) {
+    glossy += traced.rgb;
+    glossy_indirect = indirect;
+  }
 #endif
 #if EMISSION
   emitted = texelFetch(emission, pixel, 0).rgb;
@@ -99,14 +122,18 @@ void main() {
   if (!covered) {
     diffuse = vec3(0.0);
     glossy = vec3(0.0);
+    glossy_indirect = vec3(0.0);
     transmitted = vec3(0.0);
+    transmitted_indirect = vec3(0.0);
     emitted = vec3(0.0);
     g.diffuse = vec3(0.0);
     g.sheen = vec3(0.0);
     g.specular = vec3(0.0);
+    g.transmission = vec3(0.0);
     g.normal = vec3(0.0);
   }
-  vec3 combined = diffuse + glossy + transmitted + emitted;
+  vec3 combined =
+      diffuse + glossy + glossy_indirect + transmitted + transmitted_indirect + emitted;
 #if TRANSPARENT_FILM
   float coverage = covered ? 1.0 : 0.0;
 #else
@@ -129,6 +156,18 @@ void main() {
 #endif
 #ifdef FILM_GLOSSDIR
   film_add(FILM_GLOSSDIR, pixel, vec4(glossy, 0.0));
+#endif
+#ifdef FILM_GLOSSIND
+  film_add(FILM_GLOSSIND, pixel, vec4(glossy_indirect, 0.0));
+#endif
+#ifdef FILM_TRANSCOL
+  film_add(FILM_TRANSCOL, pixel, vec4(g.transmission, 0.0));
+#endif
+#ifdef FILM_TRANSDIR
+  film_add(FILM_TRANSDIR, pixel, vec4(transmitted, 0.0));
+#endif
+#ifdef FILM_TRANSIND
+  film_add(FILM_TRANSIND, pixel, vec4(transmitted_indirect, 0.0));
 #endif
 #ifdef FILM_EMIT
   film_add(FILM_EMIT, pixel, vec4(emitted, 0.0));
