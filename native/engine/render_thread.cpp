@@ -100,11 +100,6 @@ void RenderThread::publish(Job& job, const film::PassSet& passes) {
 
 void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effects& plan,
                                   scene::Scene& scene) {
-  const bool triangles = plan::runs(plan, "radiance_cache");
-  if (triangles)
-    traced_.update(scene, gpu_scene_, programs_, timer_);
-  else
-    traced_.release();
   ray_picture_.release();
   path_tracer_.release();
   realtime::Settings settings;
@@ -114,6 +109,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
   settings.filter_width = request.filter_width;
   settings.occlusion = request.occlusion;
   settings.cache = request.cache;
+  settings.specular_rays = request.specular_rays;
   const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
   gpu_scene_.check_programs(
       [&](const gpu_scene::GpuMaterial& material) {
@@ -123,6 +119,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
         programs_.get(realtime::background_program(world));
       });
   // Samples that come after others are part of a picture of many, even if only one is asked for.
+  const bool triangles = plan::runs(plan, "radiance_cache");
   realtime_.begin(request.camera, plan, settings, single(request), scene, gpu_scene_,
                   triangles ? &traced_.triangles() : nullptr);
 }
@@ -150,7 +147,12 @@ void RenderThread::render_sample(const Job& job, uint32_t index) {
     return;
   }
   if (request.debug_picture == ray_picture::Kind::kNone) {
-    realtime_.render_sample(index, request.first_sample, sharing(request, index), gpu_scene_, film_,
+    realtime::Surroundings around{gpu_scene_};
+    if (traced_.built()) {
+      around.tracer = &traced_.tracer();
+      around.triangles = &traced_.triangles();
+    }
+    realtime_.render_sample(index, request.first_sample, sharing(request, index), around, film_,
                             job.cancelled_);
     return;
   }
@@ -173,6 +175,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   const bool paths = traces_paths(request);
   plan::Effects plan;
   std::vector<std::string> warnings;
+  bool traces = false;
   {
     std::lock_guard lock(mutex);
     gpu_scene_.update(scene);
@@ -184,7 +187,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes, request.debug_picture, paths,
                                            {request.paths, request.camera.lens.radius > 0},
-                                           request.occlusion, request.cache, request.viewport});
+                                           request.occlusion, request.cache, request.specular_rays,
+                                           request.viewport});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
@@ -193,12 +197,16 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
                  // Real-time renders all pixels, and stops when the whole picture is good enough.
                  .noise_threshold = paths && wanted > 1 ? request.noise_threshold : 0});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
-    if (debug || paths) traced_.update(scene, gpu_scene_, programs_, timer_);
+    traces = debug || paths || plan::runs(plan, "specular_rays");
+    if (traces || plan::runs(plan, "radiance_cache"))
+      traced_.update(scene, gpu_scene_, programs_, timer_);
+    else
+      traced_.release();
     if (paths) begin_paths(request, plan, scene);
     if (!debug && !paths) begin_realtime(request, plan, scene);
     warnings = scene.warnings();
   }
-  if (debug || paths) {
+  if (traces) {
     job.set_status("building the structure for rays", 0);
     const int64_t pixels = int64_t(request.camera.width) * request.camera.height;
     traced_.build(request.structure, request.camera, paths ? pixels * wanted * kRaysOfPath : pixels, programs_,
@@ -258,7 +266,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
   stats.build_ms = build_ms;
   stats.total_ms = ms_since(start);
-  if (paths) stats.rays = path_tracer_.rays();
+  stats.rays = paths ? path_tracer_.rays() : realtime_.rays();
   if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
   stats.estimated_error = film_.estimated_error();

@@ -37,6 +37,8 @@ class TracedScene {
   // Frees both.
   void release();
 
+  bool built() const { return built_; }
+  // Only after update() and build().
   const tracing::TriangleList& triangles() const { return *triangles_; }
   const tracing::Tracer& tracer() const { return *tracer_; }
   // What rays do not meet as the scene asks for, for the artist.

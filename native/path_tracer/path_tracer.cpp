@@ -108,19 +108,13 @@ void PathTracer::describe_frame(const scene::Bounds& bounds) {
   }
 }
 
-int64_t PathTracer::record_bytes() const {
-  // As path_tracer/surface_record.glsl and lobes.glsl have them.
-  const rasterize::GBufferOptions& s = options_.surfaces;
-  return 16 * (2 + s.emission + 2 + 2 * (s.glossy + s.transmission + s.layers));
-}
-
 void PathTracer::reserve(uint32_t paths) {
   const int64_t n = paths;
   path_tracer::reserve(rays_buffer_, rays_texels_, GL_RGBA32F, n * int64_t(sizeof(shared::TracedRay)));
   path_tracer::reserve(hits_, hits_texels_, GL_RGBA32UI, n * int64_t(sizeof(shared::TracedHit)));
   path_tracer::reserve(states_, states_texels_, GL_RGBA32UI, n * (options_.light_passes ? 64 : 32));
   path_tracer::reserve(passed_, passed_texels_, GL_RGBA32F, n * 16);
-  path_tracer::reserve(records_, records_texels_, GL_RGBA32UI, n * record_bytes());
+  path_tracer::reserve(records_, records_texels_, GL_RGBA32UI, n * options_.surfaces.record_bytes());
   path_tracer::reserve(sums_, sums_texels_, GL_RGBA32F, n * 16 * int64_t(options_.passes.size()));
   going_.reserve(n * 4);
   counters_.reserve(int64_t(sizeof(Sent)));

@@ -92,7 +92,6 @@ class PathTracer {
   void write_depth(uint32_t count, const Surroundings& around, film::Film& film);
   void resolve(uint32_t count, film::Film& film);
   void set_frame(uint32_t index, uint32_t first_pixel, uint32_t count);
-  int64_t record_bytes() const;
 
   gl::DeviceInfo device_;
   gl::ProgramCache& programs_;

@@ -6,6 +6,7 @@
 #include "rasterize/decide.h"
 #include "ray_picture/decide.h"
 #include "realtime/decide.h"
+#include "specular_rays/decide.h"
 
 namespace panoptes::plan {
 
@@ -31,6 +32,7 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     append(ambient_occlusion::decide(facts, {settings.occlusion, runs(all, "radiance_cache"),
                                              settings.passes[size_t(film::Pass::kAo)],
                                              settings.samples}));
+    append(specular_rays::decide(facts, settings.specular_rays));
   }
   append(film::decide(settings.passes));
   if (settings.force_all_effects)

@@ -8,6 +8,7 @@
 #include "radiance_cache/settings.h"
 #include "ray_picture/kind.h"
 #include "scene/scene.h"
+#include "specular_rays/settings.h"
 
 namespace panoptes::plan {
 
@@ -20,8 +21,9 @@ struct PlanSettings {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
   bool path_tracing = false;       // Primitive tracing, not Real-time
   path_tracer::DecideSettings paths;
-  ambient_occlusion::Settings occlusion;  // these two: of Real-time
+  ambient_occlusion::Settings occlusion;  // these three: of Real-time
   radiance_cache::Settings cache;
+  specular_rays::Settings specular_rays;
   bool viewport = false;                  // frames follow each other
 };
 

@@ -77,6 +77,8 @@ void set_material(Engine& engine, Id id, const std::string& name, const std::str
                     flag("emission_varies", true), flag("normal_map", false),
                     flag("glossy", true),      flag("transmission", false),
                     flag("layers", false)};
+  if (facts.contains("least_roughness"))
+    material.facts.least_roughness = facts["least_roughness"].cast<float>();
   if (facts.contains("attributes"))
     material.attributes = facts["attributes"].cast<std::vector<std::string>>();
   edit(engine, [&](Scene& scene) { scene.set_material(id, std::move(material)); });
@@ -210,10 +212,11 @@ py::class_<Engine> bind_engine(py::module_& m) {
       .def("set_material", &set_material, py::arg("id"), py::arg("name"), py::arg("code"),
            py::arg("params"), py::arg("textures"), py::arg("facts"))
       .def("set_material_params",
-           [](Engine& e, Id id, const Array<float>& values) {
+           [](Engine& e, Id id, const Array<float>& values, float least_roughness) {
              std::vector<glm::vec4> list = params(values);
-             edit(e, [&](Scene& s) { s.set_material_params(id, std::move(list)); });
-           })
+             edit(e, [&](Scene& s) { s.set_material_params(id, std::move(list), least_roughness); });
+           },
+           py::arg("id"), py::arg("params"), py::arg("least_roughness") = 0.0f)
       .def("remove_material",
            [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_material(id); }); })
       .def("set_image_file",

@@ -44,6 +44,10 @@ void GBufferOptions::add_defines(gl::ProgramSource& source) const {
   source.defines.push_back(fmt::format("LAYERS {}", int(layers)));
 }
 
+int64_t GBufferOptions::record_bytes() const {
+  return 16 * (2 + emission + 2 + 2 * (glossy + transmission + layers));
+}
+
 gl::ProgramSource surface_program(const gpu_scene::GpuMaterial& material,
                                   const GBufferOptions& options) {
   gl::ProgramSource source;

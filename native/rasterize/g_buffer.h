@@ -29,6 +29,8 @@ struct GBufferOptions {
   static GBufferOptions of(const plan::Effects& plan);
   // Adds the macros that g_buffer.glsl asks for.
   void add_defines(gl::ProgramSource& source) const;
+  // Of a surface that a ray has met, as tracing/surface_record.glsl and base/lobes.glsl have it.
+  int64_t record_bytes() const;
   bool operator==(const GBufferOptions&) const = default;
 };
 gl::ProgramSource surface_program(const gpu_scene::GpuMaterial& material,

@@ -16,7 +16,7 @@ namespace {
 constexpr float kCutAlpha = 0.5f;
 
 // Where programs of the frame look up the radiance cache.
-constexpr int kCacheUnit = 13, kCacheBlock = 2;
+constexpr int kCacheUnit = 16, kCacheBlock = 2;
 
 // Dimensions of the sample sequences: the pixel's, that of glowing surfaces, then two a lamp.
 constexpr uint32_t kPixelDimension = 0, kEmitterDimension = 1, kLampDimension = 2;
@@ -47,7 +47,8 @@ gl::ProgramSource direct_light_program(const LightOptions& options) {
   source.name = "direct light";
   source.stages = {{GL_COMPUTE_SHADER, "realtime/direct_light.comp"}};
   source.defines = {fmt::format("SHADOWS {}", int(options.shadows)),
-                    fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae))};
+                    fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae)),
+                    fmt::format("SPECULAR_RAYS {}", int(options.specular_rays))};
   options.surfaces.add_defines(source);
   return source;
 }
@@ -63,6 +64,7 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
                     fmt::format("OCCLUSION {}", int(options.occlusion)),
                     fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows)),
                     fmt::format("PASS_OCCLUSION {}", int(options.pass_occlusion)),
+                    fmt::format("SPECULAR_RAYS {}", int(options.specular_rays)),
                     fmt::format("RADIANCE_CACHE {}", int(options.cache.has_value())),
                     fmt::format("AMBIENT {}", int(options.cache || options.world_light))};
   if (options.cache) options.cache->add_defines(source);
@@ -118,6 +120,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   want(glossy_light_, lamps_ && surfaces_.glossy, width, height);
   want(environment_, background_, width, height);
   if (!shadows_) shadow_maps_.release();
+  specular_rays_.begin(camera, plan, settings.specular_rays, settings.seed);
   if (!emissive_light_) {
     emitters_.clear();
     emitter_revision_ = -1;
@@ -177,8 +180,9 @@ shared::View Realtime::sample_view(uint32_t index, uint32_t sharing) const {
 }
 
 void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
-                             const gpu_scene::GpuScene& gpu, film::Film& film,
+                             const Surroundings& around, film::Film& film,
                              const std::atomic<bool>& cancelled) {
+  const gpu_scene::GpuScene& gpu = around.scene;
   if (index == first && first > 0 && (cascades_ || undecided() || cache_.runs()))
     look_at_first_sample(sharing, gpu, cancelled);
   const shared::View view = sample_view(index, sharing);
@@ -198,6 +202,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
   if (cache_.runs() && index == 0) cache_.begin_lamps();
+  if (specular_rays_.runs() && !shows_occlusion()) trace_specular(index, view, around, cancelled);
   if (lamps_)
     add_lamps(index, view, gpu, cancelled);
   else
@@ -216,10 +221,22 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
     stop_if(cancelled);
   }
 
-  if (settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs())
+  if (specular_rays_.runs() && (world_light_ || cache_.runs())) {
+    const std::optional<radiance_cache::LookUpOptions> cache = look_up();
+    specular_rays_.add_surroundings({world_light_, cache}, [&] { bind_ambient(cache, view); });
+  }
+  if (shows_occlusion())
     show_picture(film);
   else
-    compose(glm::vec3(view.world_origin), film);
+    compose(view, film);
+}
+
+void Realtime::trace_specular(uint32_t index, const shared::View& view, const Surroundings& around,
+                              const std::atomic<bool>& cancelled) {
+  specular_rays_.trace({index, view, g_buffer_, around.scene, *around.tracer, *around.triangles,
+                        view_block_},
+                       cancelled);
+  view_block_.set(view);
 }
 
 void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
@@ -305,11 +322,29 @@ void Realtime::show_picture(film::Film& film) {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void Realtime::compose(const glm::vec3& origin, film::Film& film) {
+std::optional<radiance_cache::LookUpOptions> Realtime::look_up() const {
+  if (!cache_.runs()) return {};
+  return cache_.look_up(kCacheUnit, kCacheBlock);
+}
+
+void Realtime::bind_ambient(const std::optional<radiance_cache::LookUpOptions>& cache,
+                            const shared::View& view) {
+  if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_.harmonics().id());
+  if (cache) cache_.bind(*cache, glm::dvec3(glm::vec3(view.world_origin)));
+}
+
+void Realtime::compose(const shared::View& view, film::Film& film) {
   gl::PassScope scope(timer_, "compose");
-  ComposeOptions options{lamps_, background_, world_light_, settings_.transparent_film,
-                         occlusion_.runs(), deep_shadows_, pass_occlusion_.runs(), {}, surfaces_};
-  if (cache_.runs()) options.cache = cache_.look_up(kCacheUnit, kCacheBlock);
+  const ComposeOptions options{.lamps = lamps_,
+                         .background = background_,
+                         .world_light = world_light_,
+                         .transparent_film = settings_.transparent_film,
+                         .occlusion = occlusion_.runs(),
+                         .deep_shadows = deep_shadows_,
+                         .pass_occlusion = pass_occlusion_.runs(),
+                         .specular_rays = specular_rays_.runs(),
+                         .cache = look_up(),
+                         .surfaces = surfaces_};
   programs_.get(compose_program(options, film)).use();
   g_buffer_.bind_visibility();
   g_buffer_.bind_surfaces();
@@ -325,9 +360,12 @@ void Realtime::compose(const glm::vec3& origin, film::Film& film) {
       glUniform1f(3, settings_.occlusion.deep_shadows);
     }
   }
-  if (pass_occlusion_.runs()) pass_occlusion_.combined().bind(6);
-  if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_.harmonics().id());
-  if (cache_.runs()) cache_.bind(*options.cache, glm::dvec3(origin));
+  if (pass_occlusion_.runs()) pass_occlusion_.combined().bind(17);
+  if (specular_rays_.runs()) {
+    specular_rays_.direct().bind(6);
+    specular_rays_.indirect().bind(13);
+  }
+  bind_ambient(options.cache, view);
   film.bind();
   dispatch_pixels();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
@@ -412,12 +450,14 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
       find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
     if (cache_.runs() && index == 0) light_cache(batch, view);
     gl::PassScope scope(timer_, "direct_light");
-    programs_.get(direct_light_program({shadows_, filtered_, surfaces_})).use();
+    const bool rays = specular_rays_.runs() && emissive_light_;
+    programs_.get(direct_light_program({shadows_, filtered_, rays, surfaces_})).use();
     g_buffer_.bind_bins();
     g_buffer_.bind_surfaces();
     if (shadows_) shadow_maps_.bind(13);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, lights_buffer_.id());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, faces_buffer_.id());
+    if (rays) specular_rays_.direct().bind(6);
     diffuse_light_.bind(0);
     diffuse_light_.bind_image(0, GL_WRITE_ONLY);
     if (surfaces_.glossy) glossy_light_.bind(1);
@@ -426,6 +466,8 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     glUniform1ui(3, batch.light_count);
     g_buffer_.dispatch_surfaces();
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    if (specular_rays_.runs())
+      specular_rays_.add_lamps(batch.first_light, batch.light_count, {shadows_, filtered_});
     stop_if(cancelled);
   }
 }

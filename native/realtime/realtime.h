@@ -1,5 +1,5 @@
-// Integrator 1: composes direct light, light that the radiance cache knows of, and what occludes it
-// nearby, into a frame, sample by sample.
+// Integrator 1: composes direct light, light that the radiance cache knows of, what occludes it nearby,
+// and what rays find for mirrors and glass, into a frame, sample by sample.
 #pragma once
 
 #include "ambient_occlusion/occlusion.h"
@@ -19,6 +19,7 @@
 #include "rasterize/sun_cascades.h"
 #include "scene/scene.h"
 #include "tracing/triangle_list.h"
+#include "specular_rays/specular_rays.h"
 
 #include <atomic>
 #include <functional>
@@ -30,6 +31,7 @@ struct Settings {
   rasterize::ShadowSettings shadows;
   ambient_occlusion::Settings occlusion;
   radiance_cache::Settings cache;
+  specular_rays::Settings specular_rays;
   uint32_t seed = 0;
   bool transparent_film = false;  // the world behind the scene is not part of Combined
   float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
@@ -38,12 +40,13 @@ struct Settings {
 // Programs of this integrator, for the frame and for the shader validation.
 struct LightOptions {
   bool shadows = false, filtered_penumbrae = false;
+  bool specular_rays = false;  // glowing surfaces are seen by rays
   rasterize::GBufferOptions surfaces;
 };
 gl::ProgramSource direct_light_program(const LightOptions& options);
 struct ComposeOptions {
   bool lamps = false, background = false, world_light = false, transparent_film = false;
-  bool occlusion = false, deep_shadows = false, pass_occlusion = false;
+  bool occlusion = false, deep_shadows = false, pass_occlusion = false, specular_rays = false;
   std::optional<radiance_cache::LookUpOptions> cache;
   rasterize::GBufferOptions surfaces;
 };
@@ -51,11 +54,19 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
 gl::ProgramSource depth_program(const film::Film& film);
 gl::ProgramSource background_program(const gpu_scene::GpuShading& world);
 
+// What a frame shows, as the scene is now. Tracer and triangles are null where the plan runs nothing
+// that follows rays.
+struct Surroundings {
+  const gpu_scene::GpuScene& scene;
+  const tracing::Tracer* tracer = nullptr;
+  const tracing::TriangleList* triangles = nullptr;
+};
+
 class Realtime {
  public:
   Realtime(const gl::DeviceInfo& device, gl::ProgramCache& programs, gl::PassTimer& timer)
       : device_(device), programs_(programs), timer_(timer), occlusion_(programs, timer),
-        pass_occlusion_(programs, timer), cache_(programs, timer) {}
+        pass_occlusion_(programs, timer), cache_(programs, timer), specular_rays_(programs, timer) {}
 
   // Prepares for a frame: allocates what the plan runs and releases what it does not. `single` says
   // that the frame has one sample only. `triangles` are those of the scene if the plan runs the radiance
@@ -66,9 +77,10 @@ class Realtime {
 
   // Adds sample `index` of a frame that begins with sample `first` to the film; `sharing` samples
   // share a pixel's footprint. Throws Cancelled when `cancelled` says so.
-  void render_sample(uint32_t index, uint32_t first, uint32_t sharing,
-                     const gpu_scene::GpuScene& gpu, film::Film& film,
-                     const std::atomic<bool>& cancelled);
+  void render_sample(uint32_t index, uint32_t first, uint32_t sharing, const Surroundings& around,
+                     film::Film& film, const std::atomic<bool>& cancelled);
+  // Rays since begin().
+  int64_t rays() const { return specular_rays_.rays(); }
 
   // Writes into the frame's plan what was only found while it ran.
   void amend(plan::Effects& plan) const { occlusion_.amend(plan); }
@@ -100,8 +112,19 @@ class Realtime {
   void choose_views(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
                     const gpu_scene::GpuScene& gpu);
   void store_lights(const rasterize::LightSet& set);
+  // Follows rays from mirrors and glass, before lamps light what they meet.
+  void trace_specular(uint32_t index, const shared::View& view, const Surroundings& around,
+                      const std::atomic<bool>& cancelled);
+  // Whether occlusion is shown in place of the scene.
+  bool shows_occlusion() const {
+    return settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs();
+  }
   void show_picture(film::Film& film);
-  void compose(const glm::vec3& origin, film::Film& film);
+  // Where programs look up the light around, and what they need for it.
+  std::optional<radiance_cache::LookUpOptions> look_up() const;
+  void bind_ambient(const std::optional<radiance_cache::LookUpOptions>& cache,
+                    const shared::View& view);
+  void compose(const shared::View& view, film::Film& film);
   void add_lamps(uint32_t index, const shared::View& view,
                  const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
 
@@ -129,6 +152,7 @@ class Realtime {
   ambient_occlusion::AmbientOcclusion pass_occlusion_;
   radiance_cache::WorldLight world_;
   radiance_cache::RadianceCache cache_;
+  specular_rays::SpecularRays specular_rays_;
   std::vector<scene::Bounds> sun_cascades_;
   int64_t shadow_revision_ = -1;  // of the scene that the kept maps show
   int shadow_resolution_ = 0;

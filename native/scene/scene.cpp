@@ -11,6 +11,9 @@ namespace panoptes::scene {
 
 namespace {
 
+// Of the default grey of slots without a material, which gpu_scene/gpu_scene.cpp has.
+constexpr MaterialFacts kDefaultFacts{.least_roughness = 0.5f};
+
 bool finite(const glm::mat4& m) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)
@@ -167,7 +170,7 @@ void Scene::set_material(Id id, Material material) {
   changes_.materials.insert(id);
 }
 
-void Scene::set_material_params(Id id, std::vector<glm::vec4> params) {
+void Scene::set_material_params(Id id, std::vector<glm::vec4> params, float least_roughness) {
   const auto found = materials_.find(id);
   if (found == materials_.end()) fail("material {} does not exist: please report it", id);
   if (found->second.params.size() != params.size()) {
@@ -176,6 +179,7 @@ void Scene::set_material_params(Id id, std::vector<glm::vec4> params) {
     changes_.material_params.insert(id);
   }
   found->second.params = std::move(params);
+  found->second.facts.least_roughness = least_roughness;
 }
 
 void Scene::remove_material(Id id) {
@@ -247,13 +251,14 @@ Facts Scene::facts() const {
   }
   for (Id id : used) {
     const auto found = materials_.find(id);
-    const MaterialFacts m = found == materials_.end() ? MaterialFacts{} : found->second.facts;
+    const MaterialFacts m = found == materials_.end() ? kDefaultFacts : found->second.facts;
     facts.alpha |= m.alpha;
     facts.emission |= m.emission;
     facts.normal_map |= m.normal_map;
     facts.glossy |= m.glossy;
     facts.transmission |= m.transmission;
     facts.layers |= m.layers;
+    if (m.glossy) facts.least_roughness = std::min(facts.least_roughness, m.least_roughness);
   }
   for (const Light& light : lights_) {
     ++facts.lamps[int(light.type)];

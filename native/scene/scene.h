@@ -114,6 +114,7 @@ struct MaterialFacts {
   bool glossy = true;
   bool transmission = false;
   bool layers = false;  // a coat or a sheen over the rest
+  float least_roughness = 0;  // of all that reflects; refraction is not counted
 };
 
 struct Material {
@@ -142,6 +143,7 @@ struct Facts {
   bool extended_lamps = false;  // some lamp has an extent, so it casts penumbrae
   bool alpha = false, emission = false, normal_map = false, glossy = false, transmission = false;
   bool layers = false;
+  float least_roughness = 1;    // of all glossy surfaces, conservative
   bool world = false;           // the world is not black
   int lamp_count() const { return lamps[0] + lamps[1] + lamps[2] + lamps[3]; }
   int shadow_lamp_count() const {
@@ -186,7 +188,8 @@ class Scene {
   void set_instance_matrices(std::span<const int> indices, std::span<const glm::mat4> matrices);
   void set_instance_scales(std::span<const int> indices, std::span<const glm::vec2> scales);
   void set_material(Id id, Material material);
-  void set_material_params(Id id, std::vector<glm::vec4> params);
+  // Values that differ; with them goes the fact that they decide on.
+  void set_material_params(Id id, std::vector<glm::vec4> params, float least_roughness = 0);
   void remove_material(Id id);
   void set_image(Id id, Image image);
   void remove_image(Id id);

@@ -1,3 +1,6 @@
+// Shares of light that lobes send back.
+#include "base/scattering.glsl"
+
 // Share of white light that single-scatter GGX of reflectance 1 reflects: 1 - r^2 p(r, mu), fitted
 // by least squares to its quadrature (sampled visible normals, 21 x 21 points); off by at most 6 %.
 float ggx_albedo(float r, float mu) {
@@ -40,4 +43,19 @@ float sheen_albedo(float roughness, float nv) {
   if (roughness < 0.0) return 0.088 * x * x * sqrt(x);
   float t = nv / max(roughness, 1.0e-2), squared = nv * nv;
   return exp(-t * (0.81 + 0.407 * t)) * (1.0 - min(1.45 - 1.1 * roughness, 1.0) * squared * squared);
+}
+
+// Share of white light from everywhere that the diffuse lobe sends back. Oren and Nayar's is exact;
+// Burley's is a fit to its quadrature, off by at most 2.5 %.
+float diffuse_albedo(float roughness, float nv) {
+  nv = clamp(nv, 1.0e-3, 1.0);
+  if (roughness < 0.0) {
+    float r = -1.0 - roughness;
+    float sine = sqrt(1.0 - nv * nv);
+    float g = sine * (acos(nv) - sine * nv) +
+              2.0 / 3.0 * (sine / nv * (1.0 - sine * sine * sine) - sine);
+    return (PI + r * g) / (PI + (0.5 * PI - 2.0 / 3.0) * r);
+  }
+  float grazing = fifth_power(1.0 - nv);
+  return mix(0.976 - 0.488 * grazing, 1.035 + 0.55 * grazing, roughness);
 }

@@ -1,5 +1,8 @@
 // Reflectance of smooth surfaces.
 
+// Of clear coats.
+const float COAT_IOR = 1.5;
+
 float reflectance_from_ior(float ior) {
   float r = (ior - 1.0) / (ior + 1.0);
   return r * r;

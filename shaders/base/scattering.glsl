@@ -23,21 +23,6 @@ float diffuse_lobe(float roughness, float nl, float nv, float lv, float lh) {
   return (1.0 + (f90 - 1.0) * fifth_power(1.0 - nl)) * (1.0 + (f90 - 1.0) * fifth_power(1.0 - nv)) / PI;
 }
 
-// Share of white light from everywhere that the diffuse lobe sends back. Oren and Nayar's is exact;
-// Burley's is a fit to its quadrature, off by at most 2.5 %.
-float diffuse_albedo(float roughness, float nv) {
-  nv = clamp(nv, 1.0e-3, 1.0);
-  if (roughness < 0.0) {
-    float r = -1.0 - roughness;
-    float sine = sqrt(1.0 - nv * nv);
-    float g = sine * (acos(nv) - sine * nv) +
-              2.0 / 3.0 * (sine / nv * (1.0 - sine * sine * sine) - sine);
-    return (PI + r * g) / (PI + (0.5 * PI - 2.0 / 3.0) * r);
-  }
-  float grazing = fifth_power(1.0 - nv);
-  return mix(0.976 - 0.488 * grazing, 1.035 + 0.55 * grazing, roughness);
-}
-
 // Ashikhmin's velvet of that deviation; for negative roughness the sheen of Disney's BRDF.
 float sheen_lobe(float roughness, float nl, float nv, float nh, float lh) {
   lh = clamp(lh, 1.0e-5, 1.0);

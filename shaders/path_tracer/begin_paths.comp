@@ -3,7 +3,7 @@
 #include "base/invocation.glsl"
 #include "gpu_scene/view_shared.h"
 #include "path_tracer/path_state.glsl"
-#include "path_tracer/sampling.glsl"
+#include "base/sampling.glsl"
 #include "scene/visibility_shared.h"
 #include "tracing/rays_shared.h"
 

@@ -1,10 +1,10 @@
 // One ray from each first surface, by the cosine over its shading normal: what they do not meet nearby
 // is the AO pass.
 #include "base/invocation.glsl"
-#include "path_tracer/lobes.glsl"
+#include "base/lobes.glsl"
 #include "path_tracer/path_state.glsl"
-#include "path_tracer/sampling.glsl"
-#include "path_tracer/surface_record.glsl"
+#include "base/sampling.glsl"
+#include "tracing/surface_record.glsl"
 #include "scene/visibility_shared.h"
 #include "tracing/rays_shared.h"
 

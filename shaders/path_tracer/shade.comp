@@ -3,12 +3,12 @@
 #define STATE_UNIT 7
 #include "base/color.glsl"
 #include "base/invocation.glsl"
-#include "path_tracer/lobes.glsl"
-#include "path_tracer/bsdf.glsl"
+#include "base/lobes.glsl"
+#include "base/bsdf.glsl"
 #include "path_tracer/path_state.glsl"
 #include "path_tracer/light_sums.glsl"
-#include "path_tracer/sampling.glsl"
-#include "path_tracer/surface_record.glsl"
+#include "base/sampling.glsl"
+#include "tracing/surface_record.glsl"
 #include "scene/visibility_shared.h"
 #include "tracing/rays_shared.h"
 #if LIGHTS

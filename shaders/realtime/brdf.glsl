@@ -30,8 +30,6 @@ vec3 glossy_lobe(vec3 f0, vec3 f90, float ior, float roughness, vec3 n, vec3 v, 
   return mix(f0, f90, rise) * ggx_lobe(alpha_from_roughness(roughness), n, v, l);
 }
 
-const float COAT_IOR = 1.5;
-
 // A clear coat: GGX; or, where roughness is negative, that of Disney's BRDF as Cycles has it before
 // 4.0 (Burley 2012: GTR1, masked as if of roughness .25 squared).
 float coat_lobe(float roughness, vec3 n, vec3 v, vec3 l) {

@@ -4,7 +4,8 @@
 #include "rasterize/g_buffer.glsl"
 #include "base/albedo.glsl"
 #include "realtime/brdf.glsl"
-#include "realtime/ambient.glsl"
+#include "radiance_cache/ambient.glsl"
+#include "specular_rays/path_shared.h"
 #include "film/film.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,13 +26,19 @@ layout(binding = 3) uniform sampler2D environment;
 layout(binding = 4) uniform sampler2D occlusion;  // bent normal, visibility
 layout(location = 2) uniform float strength;
 #if PASS_OCCLUSION
-layout(binding = 6) uniform sampler2D pass_occlusion;  // of the AO pass, which reaches farther
+layout(binding = 17) uniform sampler2D pass_occlusion;  // of the AO pass, which reaches farther
 #endif
 #if DEEP_SHADOWS
 layout(binding = 5) uniform sampler2D deep;  // w: visibility
 layout(location = 3) uniform float deep_strength;
 #endif
 #endif
+#if SPECULAR_RAYS
+// What rays bring, scattered once (a: FOLLOWS and LEFT_BY_REFRACTION bits) and more often.
+layout(binding = 6) uniform sampler2D traced_direct;
+layout(binding = 13) uniform sampler2D traced_indirect;
+#endif
+
 #if AMBIENT
 #if OCCLUSION
 // Share of reflected light that comes past what occludes the surface (Lagarde and de Rousiers 2014).
@@ -51,6 +58,13 @@ void main() {
   vec3 v = -view_direction(vec2(pixel) + 0.5);
 
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0), emitted = vec3(0.0), background = vec3(0.0);
+  vec3 transmitted = vec3(0.0), diffuse_indirect = vec3(0.0), glossy_indirect = vec3(0.0),
+       transmitted_indirect = vec3(0.0);
+  uint followed = 0u;  // lobes that a ray stands for
+#if SPECULAR_RAYS
+  vec4 traced = texelFetch(traced_direct, pixel, 0);
+  followed = uint(traced.a);
+#endif
 #if LAMPS
   diffuse = texelFetch(diffuse_light, pixel, 0).rgb;
 #if GLOSSY
@@ -61,8 +75,6 @@ void main() {
 #if OCCLUSION
   vec4 occluded = texelFetch(occlusion, pixel, 0);
 #endif
-  vec3 diffuse_bounced = vec3(0.0), glossy_bounced = vec3(0.0);
-  vec3 transmitted = vec3(0.0), transmitted_bounced = vec3(0.0);
 #if AMBIENT
   float nv = max(dot(g.normal, v), 0.0);
   vec3 open = g.normal;
@@ -82,29 +94,46 @@ void main() {
   sent += visible * g.sheen * sheen_albedo(g.sheen_roughness, nv);
 #endif
   diffuse += sent * around.world;
-  diffuse_bounced += sent * around.bounced;
+  diffuse_indirect += sent * around.bounced;
   // Reflected and refracted light from blurred radiance, where no ray is traced.
 #if GLOSSY
-  Ambient mirrored = ambient_radiance(here, reflect(-v, g.normal), g.roughness);
-  vec3 reflected = environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
-                   specular_visibility(visible, g.roughness, nv);
-  glossy += reflected * mirrored.world;
-  glossy_bounced += reflected * mirrored.bounced;
+  if ((followed & FOLLOWS_SPECULAR) == 0u) {
+    Ambient mirrored = ambient_radiance(here, reflect(-v, g.normal), g.roughness);
+    vec3 reflected = environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
+                     specular_visibility(visible, g.roughness, nv);
+    glossy += reflected * mirrored.world;
+    glossy_indirect += reflected * mirrored.bounced;
+  }
 #if LAYERS
-  float coat_nv = max(dot(g.coat_normal, v), 0.0), coat_roughness = abs(g.coat_roughness);
-  mirrored = ambient_radiance(here, reflect(-v, g.coat_normal), coat_roughness);
-  reflected = environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
-                                      coat_roughness, coat_nv) *
-              specular_visibility(visible, coat_roughness, nv);
-  glossy += reflected * mirrored.world;
-  glossy_bounced += reflected * mirrored.bounced;
+  if ((followed & FOLLOWS_COAT) == 0u) {
+    float coat_nv = max(dot(g.coat_normal, v), 0.0), coat_roughness = abs(g.coat_roughness);
+    Ambient mirrored = ambient_radiance(here, reflect(-v, g.coat_normal), coat_roughness);
+    vec3 reflected = environment_reflectance(vec3(g.coat * reflectance_from_ior(COAT_IOR)), vec3(g.coat),
+                                             coat_roughness, coat_nv) *
+                     specular_visibility(visible, coat_roughness, nv);
+    glossy += reflected * mirrored.world;
+    glossy_indirect += reflected * mirrored.bounced;
+  }
 #endif
 #endif
 #if TRANSMISSION
-  Ambient behind = ambient_radiance(look_around(g.position, -g.geometric_normal), -v, g.transmission_roughness);
-  transmitted = g.transmission * behind.world;
-  transmitted_bounced = g.transmission * behind.bounced;
+  if ((followed & FOLLOWS_TRANSMISSION) == 0u) {
+    Ambient behind = ambient_radiance(look_around(g.position, -g.geometric_normal), -v,
+                                      g.transmission_roughness);
+    transmitted = g.transmission * behind.world;
+    transmitted_indirect = g.transmission * behind.bounced;
+  }
 #endif
+#endif
+#if SPECULAR_RAYS
+  vec3 indirect = texelFetch(traced_indirect, pixel, 0).rgb;
+  if ((followed & LEFT_BY_REFRACTION) != 0u) {
+    transmitted += traced.rgb;
+    transmitted_indirect += indirect;
+  } else if (followed != 0u) {
+    glossy += traced.rgb;
+    glossy_indirect += indirect;
+  }
 #endif
 #if EMISSION
   emitted = texelFetch(emission, pixel, 0).rgb;
@@ -115,8 +144,10 @@ void main() {
   if (!covered) {
     diffuse = vec3(0.0);
     glossy = vec3(0.0);
+    glossy_indirect = vec3(0.0);
     transmitted = vec3(0.0);
-    diffuse_bounced = glossy_bounced = transmitted_bounced = vec3(0.0);
+    diffuse_indirect = vec3(0.0);
+    transmitted_indirect = vec3(0.0);
     emitted = vec3(0.0);
     g.diffuse = vec3(0.0);
     g.sheen = vec3(0.0);
@@ -124,8 +155,8 @@ void main() {
     g.transmission = vec3(0.0);
     g.normal = vec3(0.0);
   }
-  vec3 combined = diffuse + glossy + transmitted + emitted + diffuse_bounced + glossy_bounced +
-                  transmitted_bounced;
+  vec3 combined = diffuse + diffuse_indirect + glossy + glossy_indirect + transmitted +
+                  transmitted_indirect + emitted;
 #if TRANSPARENT_FILM
   float coverage = covered ? 1.0 : 0.0;
 #else
@@ -143,7 +174,7 @@ void main() {
   film_add(FILM_DIFFDIR, pixel, vec4(diffuse, 0.0));
 #endif
 #ifdef FILM_DIFFIND
-  film_add(FILM_DIFFIND, pixel, vec4(diffuse_bounced, 0.0));
+  film_add(FILM_DIFFIND, pixel, vec4(diffuse_indirect, 0.0));
 #endif
 #ifdef FILM_GLOSSCOL
   film_add(FILM_GLOSSCOL, pixel,
@@ -153,16 +184,16 @@ void main() {
   film_add(FILM_GLOSSDIR, pixel, vec4(glossy, 0.0));
 #endif
 #ifdef FILM_GLOSSIND
-  film_add(FILM_GLOSSIND, pixel, vec4(glossy_bounced, 0.0));
+  film_add(FILM_GLOSSIND, pixel, vec4(glossy_indirect, 0.0));
 #endif
 #ifdef FILM_TRANSCOL
-  film_add(FILM_TRANSCOL, pixel, vec4(vec3(any(greaterThan(g.transmission, vec3(0.0))) ? 1.0 : 0.0), 0.0));
+  film_add(FILM_TRANSCOL, pixel, vec4(g.transmission, 0.0));
 #endif
 #ifdef FILM_TRANSDIR
   film_add(FILM_TRANSDIR, pixel, vec4(transmitted, 0.0));
 #endif
 #ifdef FILM_TRANSIND
-  film_add(FILM_TRANSIND, pixel, vec4(transmitted_bounced, 0.0));
+  film_add(FILM_TRANSIND, pixel, vec4(transmitted_indirect, 0.0));
 #endif
 #ifdef FILM_EMIT
   film_add(FILM_EMIT, pixel, vec4(emitted, 0.0));

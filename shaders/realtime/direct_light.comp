@@ -5,6 +5,7 @@
 #include "rasterize/g_buffer.glsl"
 #include "rasterize/lamp_light.glsl"
 #include "realtime/brdf.glsl"
+#include "specular_rays/path_shared.h"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32f) writeonly uniform image2D diffuse_light;  // by the diffuse lobe
@@ -14,6 +15,9 @@ layout(binding = 1, rgba32f) writeonly uniform image2D glossy_light;
 // What earlier batches left.
 layout(binding = 0) uniform sampler2D diffuse_before;
 layout(binding = 1) uniform sampler2D glossy_before;
+#if SPECULAR_RAYS
+layout(binding = 6) uniform sampler2D traced;  // a: FOLLOWS bits
+#endif
 layout(location = 2) uniform uint first_light;
 layout(location = 3) uniform uint light_count;
 
@@ -26,6 +30,10 @@ void main() {
 
   float random = unit_float(hash(pixels[i] + hash(uint(view.size.z) + hash(uint(view.size.w)))));
   Receiver receiver = Receiver(g.position, g.geometric_normal, g.smooth_normal, g.bulge, random);
+  uint followed = 0u;
+#if SPECULAR_RAYS
+  followed = uint(texelFetch(traced, pixel, 0).a);
+#endif
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
   for (uint k = first_light; k < first_light + light_count; ++k) {
     vec3 to_light;
@@ -33,14 +41,18 @@ void main() {
     vec3 arriving = irradiance * incidence(g.smooth_normal, g.normal, to_light);
     diffuse += arriving * g.diffuse * diffuse_lobe(g.diffuse_roughness, g.normal, v, to_light);
 #if GLOSSY
-    glossy += arriving * glossy_lobe(g.specular, g.grazing, g.specular_ior, g.roughness, g.normal, v,
-                                     to_light);
+    // Rays meet glowing surfaces themselves.
+    uint met = lights[k].type == LIGHT_MESH ? followed : 0u;
+    if ((met & FOLLOWS_SPECULAR) == 0u)
+      glossy += arriving * glossy_lobe(g.specular, g.grazing, g.specular_ior, g.roughness, g.normal,
+                                       v, to_light);
 #endif
 #if LAYERS
     diffuse += arriving * g.sheen * sheen_lobe(g.sheen_roughness, g.normal, v, to_light);
 #if GLOSSY
-    glossy += irradiance * incidence(g.smooth_normal, g.coat_normal, to_light) * g.coat *
-              coat_lobe(g.coat_roughness, g.coat_normal, v, to_light);
+    if ((met & FOLLOWS_COAT) == 0u)
+      glossy += irradiance * incidence(g.smooth_normal, g.coat_normal, to_light) * g.coat *
+                coat_lobe(g.coat_roughness, g.coat_normal, v, to_light);
 #endif
 #endif
   }

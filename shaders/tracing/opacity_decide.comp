@@ -3,10 +3,9 @@
 #include "base/invocation.glsl"
 #include "gpu_scene/material.glsl"
 #include "generated/material.glsl"
-#include "tracing/rays_shared.h"
+#include "tracing/met_surface.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 7) uniform samplerBuffer triangles;  // as TracedTriangle
 layout(std430, binding = 0) readonly buffer Hits { TracedHit hits[]; };
 layout(std430, binding = 1) buffer Rays { TracedRay rays[]; };
 layout(std430, binding = 2) buffer Counter { uint passing_count; };
@@ -28,14 +27,8 @@ void main() {
   TracedRay traced = rays[index];
   uint primitive = hits[index].primitive;
 
-  Ray ray;
-  ray.origin = vec3(traced.origin_x, traced.origin_y, traced.origin_z);
-  ray.direction = vec3(traced.direction_x, traced.direction_y, traced.direction_z);
-  int texel = int(primitive) * 3;
-  uint instance = floatBitsToUint(texelFetch(triangles, texel).w);
-  uint triangle = floatBitsToUint(texelFetch(triangles, texel + 1).w);
   Surface surface = empty_surface();
-  evaluate_material(fetch_hit(ray, instance, triangle), surface);
+  evaluate_material(met_hit(traced, primitive), surface);
 
   vec3 transparency = clamp(finite(surface.transparency), 0.0, 1.0);
 #if TRANSMITTANCE

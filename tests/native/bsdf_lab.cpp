@@ -10,7 +10,7 @@ namespace panoptes::test {
 namespace {
 
 constexpr const char* kLobes = R"(
-#include "path_tracer/bsdf.glsl"
+#include "base/bsdf.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Setup { vec4 setup[12]; };
 layout(std430, binding = 1) readonly buffer Pairs { vec4 pairs[]; };
@@ -119,7 +119,7 @@ std::vector<LabSample> BsdfLab::draw(const LabLobes& lobes, const glm::dvec3& vi
 std::vector<glm::vec4> BsdfLab::run(const std::string& main, int count) {
   gl::ProgramSource source = lab_program("closures", R"(
 #include "gpu_scene/material.glsl"
-#include "path_tracer/bsdf.glsl"
+#include "base/bsdf.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = 2) writeonly buffer Results { vec4 results[]; };
 #include "lab/body.glsl"

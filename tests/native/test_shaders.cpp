@@ -226,7 +226,7 @@ class Shaders : public ::testing::Test {
     for (bool shadows : {false, true})
       for (int bits = 0; bits < 16; ++bits)
         for (bool filtered : {false, true})
-          add(realtime::direct_light_program({shadows, filtered, surfaces(bits)}));
+          add(realtime::direct_light_program({shadows, filtered, false, surfaces(bits)}));
     add(rasterize::visible_bounds_program());
 
     // Passes only add stores; each alone, none and all stand for the rest.
@@ -242,13 +242,14 @@ class Shaders : public ::testing::Test {
                                      .occlusion = occlusion,
                                      .deep_shadows = deep_shadows,
                                      .pass_occlusion = deep_shadows && cache,
+                                     .specular_rays = deep_shadows,
                                      .cache = cache,
                                      .surfaces = surfaces(bits)},
                                     film));
     };
     for (int encoding = 0; encoding < 6; ++encoding)
       for (bool split : {false, true}) {
-        const radiance_cache::LookUpOptions cache{radiance_cache::Encoding(encoding), split, 13, 2};
+        const radiance_cache::LookUpOptions cache{radiance_cache::Encoding(encoding), split, 16, 2};
         for (int bits : {0, 15, 80, 127}) with_film(film::PassSet().set(), true, bits, split, split, cache);
         add(radiance_cache::bounce_program(cache, split, true));
         for (bool world : {false, true})

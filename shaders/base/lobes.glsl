@@ -1,4 +1,4 @@
-// How a surface scatters light, as the path tracer keeps it between the programs of materials and
+// How a surface scatters light, as those who follow rays keep it between the programs of materials and
 // the one that scatters: one lobe of each kind, each with its own normal. GLOSSY, TRANSMISSION and
 // LAYERS say which kinds there are; others take no room.
 //
@@ -107,8 +107,6 @@ void pack_lobes(Lobes l, out uvec4 texels[LOBES_TEXELS]) {
   texels[1] = uvec4(pack_unit(l.geometric_normal), pack_unit(l.smooth_normal), pack_unit(l.normal),
                     specular_normal);
 }
-
-const float COAT_IOR = 1.5;
 
 // By about how much light each lobe sends to the viewer. No lobe of facets is chosen where its
 // normal faces away from the viewer: there it is black.

@@ -5,7 +5,7 @@
 // density is that of all lobes together. Reflection never leaves below the geometric surface, and
 // refraction never above it: the density there is 0. Light that comes from there is shaded all the
 // same, for it is by the smooth normals that a mesh looks smooth.
-#include "path_tracer/lobes.glsl"
+#include "base/lobes.glsl"
 #include "base/microfacet.glsl"
 
 const uint BOUNCE_DIFFUSE = 0u;

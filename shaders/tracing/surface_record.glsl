@@ -1,6 +1,7 @@
-// How a surface that a path has met is stored, after path_tracer/lobes.glsl: a texel {position about the
-// list of triangles, metres; how far off the surface rays begin, metres}, one {number of the path;
+// How a surface that a ray has met is stored, after base/lobes.glsl: a texel {position about the list
+// of triangles, metres; how far off the surface rays begin, metres}, one {number of the ray;
 // Hit::bulge, metres}, its emission where anything emits, its lobes.
+// rasterize::GBufferOptions::record_bytes() knows the size.
 
 #if EMISSION
 const int LOBES_AT = 3;
