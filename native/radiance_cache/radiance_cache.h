@@ -75,8 +75,8 @@ class RadianceCache {
   // Makes the cells' light.
   void gather();
 
-  // The side of the finest cells, m: what is smaller than that, look-ups do not know of.
-  double cell() const { return grids_.empty() ? 0 : grids_.front().cell; }
+  // The side of the finest voxels, m: what stands nearer to a surface than that, rays do not meet.
+  double voxel() const { return grids_.empty() ? 0 : grids_.front().cell / grids_.front().voxels; }
   // For look-ups about points relative to `origin`, by the program in use.
   LookUpOptions look_up(int unit, int block) const;
   void bind(const LookUpOptions& options, const glm::dvec3& origin);

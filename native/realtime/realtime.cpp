@@ -150,8 +150,8 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
 
 void Realtime::begin_occlusion() {
   ambient_occlusion::Settings contact = settings_.occlusion;
-  // Cells know what stands farther away.
-  if (cache_.runs()) contact.distance = std::min(contact.distance, float(cache_.cell()));
+  // Rays of the cache have met what stands farther away.
+  if (cache_.runs()) contact.distance = std::min(contact.distance, float(cache_.voxel()));
   const bool picture = contact.picture != ambient_occlusion::Picture::kNone;
   const bool pass = runs(plan_, "pass_ao") && contact.distance < settings_.occlusion.distance;
   occlusion_.begin(camera_, picture ? settings_.occlusion : contact, plan_, settings_.seed);

@@ -148,7 +148,7 @@ class Realtime {
   int64_t emitter_revision_ = -1;
   rasterize::ShadowMaps shadow_maps_;
   ambient_occlusion::AmbientOcclusion occlusion_;  // of light
-  // Of the AO pass, where that reaches farther than a cell of the cache.
+  // Of the AO pass, where that reaches farther than a voxel of the cache.
   ambient_occlusion::AmbientOcclusion pass_occlusion_;
   radiance_cache::WorldLight world_;
   radiance_cache::RadianceCache cache_;

@@ -38,6 +38,14 @@ vec4[CELL_TEXELS] encode(vec3 harmonics[9], float seed) {
   return texels;
 }
 
+// The colour of luminance `c.x` and chrominances `c.yz`, less of these where it would be negative: a
+// chrominance that was cut off early may be too strong where luminance is low.
+vec3 rgb_in_gamut(vec3 c) {
+  vec3 offset = rgb_from_ycocg(vec3(0.0, c.yz));
+  float lowest = min(offset.r, min(offset.g, offset.b));
+  return c.x + offset * (lowest < 0.0 ? clamp(-c.x / lowest, 0.0, 1.0) : 1.0);
+}
+
 // The sum over all harmonics of what is stored times `weights`. May be below 0 where harmonics ring.
 vec3 decode(vec4 texels[CELL_TEXELS], float weights[9]) {
   vec3 sum = vec3(0.0);
@@ -49,7 +57,7 @@ vec3 decode(vec4 texels[CELL_TEXELS], float weights[9]) {
     }
   }
 #if !RGB
-  sum = rgb_from_ycocg(sum);
+  sum = rgb_in_gamut(sum);
 #endif
   return sum;
 }
