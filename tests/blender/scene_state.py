@@ -24,8 +24,9 @@ class SceneState:
     def set_material(self, material_id, name, code, params, textures, facts):
         self.materials[material_id] = [code, params.tobytes(), list(textures), dict(facts)]
 
-    def set_material_params(self, material_id, params):
+    def set_material_params(self, material_id, params, least_roughness):
         self.materials[material_id][1] = params.tobytes()
+        self.materials[material_id][3]['least_roughness'] = least_roughness
 
     def remove_material(self, material_id):
         del self.materials[material_id]

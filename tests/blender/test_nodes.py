@@ -232,6 +232,23 @@ class TestFacts:
         assert not tree.compile().facts['glossy']
         assert not Tree('ShaderNodeBsdfDiffuse').compile().facts['glossy']
 
+    def test_least_roughness(self, scene):
+        coat = compat.PRINCIPLED_SOCKETS['coat']
+        tree = Tree()
+        tree.surface.inputs['Roughness'].default_value = 0.75
+        rough = tree.compile()
+        assert rough.least_roughness == 0.75
+        tree.surface.inputs['Roughness'].default_value = 0.25
+        smooth = tree.compile()
+        assert smooth.least_roughness == 0.25
+        assert (smooth.code, smooth.facts) == (rough.code, rough.facts), 'a value asks for a new program'
+        tree.surface.inputs[coat].default_value = 1.0
+        assert tree.compile().least_roughness == pytest.approx(0.03)
+        tree.surface.inputs[coat].default_value = 0.0
+        tree.link(tree.add('ShaderNodeTexNoise'), 'Fac', tree.surface, 'Roughness')
+        assert tree.compile().least_roughness == 0
+        assert Tree('ShaderNodeBsdfDiffuse').compile().least_roughness == 1
+
     def test_normal_map_and_attributes(self, scene):
         tree = Tree()
         node = tree.add('ShaderNodeNormalMap', uv_map='Other')

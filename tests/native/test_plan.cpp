@@ -38,8 +38,26 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
       {"emission",
        [](auto& f, auto&) { f.emission = true; },
        {"emission", "emissive_light", "emissive_shadows", "filtered_penumbrae"}},
-      {"glossy", [](auto& f, auto&) { f.glossy = true; }, {"glossy"}},
-      {"glass", [](auto& f, auto&) { f.transmission = true; }, {"transmission"}},
+      {"glossy and rough", [](auto& f, auto&) { f.glossy = true; }, {"glossy"}},
+      {"glossy and rough, with rays switched on",
+       [](auto& f, auto& s) {
+         f.glossy = true;
+         s.specular_rays.mode = specular_rays::Mode::kOn;
+       },
+       {"glossy", "specular_rays"}},
+      {"a mirror",
+       [](auto& f, auto&) {
+         f.glossy = true;
+         f.least_roughness = 0.1f;
+       },
+       {"glossy", "specular_rays"}},
+      {"glass", [](auto& f, auto&) { f.transmission = true; }, {"transmission", "specular_rays"}},
+      {"glass without rays",
+       [](auto& f, auto& s) {
+         f.transmission = true;
+         s.specular_rays.mode = specular_rays::Mode::kOff;
+       },
+       {"transmission"}},
       {"a coat or a sheen", [](auto& f, auto&) { f.layers = true; }, {"layers"}},
       {"a point lamp without shadow", [](auto& f, auto&) { f.lamps[0] = 1; }, {"direct_light"}},
       {"a point lamp",

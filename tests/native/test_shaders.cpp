@@ -16,6 +16,7 @@
 #include "ray_picture/ray_picture.h"
 #include "rays/tracers.h"
 #include "realtime/realtime.h"
+#include "specular_rays/programs.h"
 #include "support.h"
 #include "tracing/opacity.h"
 
@@ -193,6 +194,19 @@ class Shaders : public ::testing::Test {
       add(ambient_occlusion::picture_program(ambient_occlusion::Picture(picture), film));
   }
 
+  // But for those that materials and worlds are part of.
+  static void add_specular_rays() {
+    add(specular_rays::begin_program());
+    for (int bits = 0; bits < 32; ++bits) {
+      const specular_rays::ProgramOptions options{surfaces(bits), bool(bits & 16)};
+      add(specular_rays::select_program(options));
+      add(specular_rays::go_on_program(options));
+      for (bool world : {false, true}) add(specular_rays::surroundings_program(options, {world, {}}));
+      for (bool filtered : {false, true})
+        add(specular_rays::lamps_program(options, {bool(bits & 16), filtered}));
+    }
+  }
+
   static void enumerate() {
     const char* plain = "void evaluate_material(const Hit hit, inout Surface surface) {\n"
                         "  closure_principled_v3(surface, vec3(1.0), principled_defaults(hit));\n"
@@ -214,6 +228,7 @@ class Shaders : public ::testing::Test {
         for (int bits = 0; bits < 16; ++bits)
           if (bits == 0 || bits == 15 || m.textures.size() == 2)
             add(path_tracer::fetch_program(m, path_options(bits, false)));
+        for (int bits : {0, 15}) add(specular_rays::fetch_program(m, {surfaces(bits), alpha}));
         for (bool rich : {false, true})
           add(path_tracer::arrive_emitter_program(m, path_options(0, rich)));
         for (tracing::OpacityOptions opacity : {tracing::OpacityOptions{false, false},
@@ -226,7 +241,8 @@ class Shaders : public ::testing::Test {
     for (bool shadows : {false, true})
       for (int bits = 0; bits < 16; ++bits)
         for (bool filtered : {false, true})
-          add(realtime::direct_light_program({shadows, filtered, false, surfaces(bits)}));
+          for (bool rays : {false, true})
+            add(realtime::direct_light_program({shadows, filtered, rays, surfaces(bits)}));
     add(rasterize::visible_bounds_program());
 
     // Passes only add stores; each alone, none and all stand for the rest.
@@ -252,6 +268,7 @@ class Shaders : public ::testing::Test {
         const radiance_cache::LookUpOptions cache{radiance_cache::Encoding(encoding), split, 16, 2};
         for (int bits : {0, 15, 80, 127}) with_film(film::PassSet().set(), true, bits, split, split, cache);
         add(radiance_cache::bounce_program(cache, split, true));
+        add(specular_rays::surroundings_program({surfaces(15), false}, {split, cache}));
         for (bool world : {false, true})
           for (bool bounced : {false, true})
             add(radiance_cache::gather_program({cache.encoding, split, world, bounced}));
@@ -275,6 +292,7 @@ class Shaders : public ::testing::Test {
         with_film({}, false, bits, true, deep_shadows);
       }
     add_occlusion(film);
+    add_specular_rays();
     for (int pass = 0; pass < film::kPassCount; ++pass)
       for (int bits : {0, 255}) with_film(film::PassSet().set(size_t(pass)), false, bits);
 
@@ -335,6 +353,7 @@ class Shaders : public ::testing::Test {
       add(realtime::background_program(world));
       add(radiance_cache::world_radiance_program(world));
       add(path_tracer::world_map_program(world));
+      for (bool alpha : {false, true}) add(specular_rays::miss_program(world, {surfaces(0), alpha}));
       for (bool rich : {false, true}) {
         add(path_tracer::miss_program(&world, path_options(0, rich)));
         add(path_tracer::arrive_world_program(world, path_options(0, rich)));

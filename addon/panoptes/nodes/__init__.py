@@ -26,7 +26,8 @@ class CompiledShader(NamedTuple):
     ImageUser). `facts` are the booleans alpha, emission, emission_varies (over the surface or by
     its side), normal_map, glossy, transmission and layers (a coat or a sheen), and 'attributes',
     the names behind ATTRIBUTE(n). `constant` is a world's radiance (r, g, b) where it is the same in
-    every direction, else None. `warnings` are sentences for the artist.
+    every direction, else None. `warnings` are sentences for the artist. `least_roughness`
+    is that of all that reflects, 0 where it is not known: a value, of which `code` knows nothing.
     """
 
     code: str
@@ -36,6 +37,7 @@ class CompiledShader(NamedTuple):
     warnings: list
     constant: Optional[tuple] = None
     depends_on_objects: bool = False
+    least_roughness: float = 0.0
 
 
 def _finish(compiler, signature, result_lines, constant=None):
@@ -46,7 +48,7 @@ def _finish(compiler, signature, result_lines, constant=None):
     params = np.nan_to_num(np.array(rows, np.float32), posinf=3e38, neginf=-3e38)
     facts = dict(compiler.facts, attributes=list(compiler.attributes))
     return CompiledShader(code, params, compiler.textures, facts, compiler.warnings, constant,
-                          compiler.depends_on_objects)
+                          compiler.depends_on_objects, compiler.least_roughness)
 
 
 def _quoted(kind, name):

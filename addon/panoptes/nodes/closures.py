@@ -171,6 +171,11 @@ def _roughness(use):
     return _float(use, 'Roughness', '0.0')
 
 
+def _note_glossy(use):
+    sharp = getattr(use.node, 'distribution', '') == 'SHARP'
+    use.compiler.note_glossy(0.0 if sharp else use.constant('Roughness'))
+
+
 def is_multiscatter(use):
     """Tell whether light is to be scattered several times between the facets of a closure."""
     return getattr(use.node, 'distribution', '') == 'MULTI_GGX'
@@ -187,7 +192,7 @@ def diffuse(use, weight):
 @closure('BSDF_GLOSSY')
 def glossy(use, weight):
     """Glossy BSDF."""
-    use.compiler.facts['glossy'] = True
+    _note_glossy(use)
     if getattr(use.node, 'distribution', '') in ('BECKMANN', 'ASHIKHMIN_SHIRLEY'):
         use.compiler.warn(use.node, 'GGX', 'has one distribution only')
     function = 'closure_glossy(surface'
@@ -207,7 +212,7 @@ def _refractive(use, weight, function):
 @closure('BSDF_GLASS')
 def glass(use, weight):
     """Glass BSDF."""
-    use.compiler.facts['glossy'] = True
+    _note_glossy(use)
     _refractive(use, weight,
                 'closure_glass_multiscatter' if is_multiscatter(use) else 'closure_glass')
 
@@ -254,7 +259,7 @@ def empty_mix(use, weight):
 
 def _metallic(use, weight):
     """Metallic BSDF of 4.3 and later, by its base colour."""
-    use.compiler.facts['glossy'] = True
+    _note_glossy(use)
     use.compiler.statement(
         f'closure_glossy(surface, {weight}, {_color(use, "Base Color")}, {_roughness(use)}, '
         f'{use.normal()});')

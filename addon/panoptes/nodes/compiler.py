@@ -109,7 +109,8 @@ class Compiler:
 
     `domain` is 'material' or 'world'; `owner` is how warnings name the data-block
     ("Material 'Oak'"), `pass_index` its number for the Object Info node. Afterwards: `lines`, `functions` (texts of functions of a hit),
-    `helpers`, `parameters.rows`, `textures` (image, interpolation, extension, image user), `attributes` (names), `facts`, `warnings`.
+    `helpers`, `parameters.rows`, `textures` (image, interpolation, extension, image user), `attributes` (names), `facts`,
+    `least_roughness` (of all that reflects, as far as it is known), `warnings`.
     """
 
     def __init__(self, domain, owner, pass_index=0):
@@ -126,6 +127,7 @@ class Compiler:
         self.attributes = []
         self.facts = {'alpha': False, 'emission': False, 'emission_varies': False,
                       'normal_map': False, 'glossy': False, 'transmission': False, 'layers': False}
+        self.least_roughness = 1.0
         # Whether the weight of the closure at hand may be another at each place or side.
         self.weight_varies = False
         self.warnings = []
@@ -181,6 +183,11 @@ class Compiler:
         self.functions.append(
             f'{"float" if kind == "float" else "vec3"} {name}(const Hit hit)\n{{\n{body}    return {result};\n}}\n')
         return name
+
+    def note_glossy(self, roughness):
+        """Note that the closure at hand reflects, with this roughness (None: any)."""
+        self.facts['glossy'] = True
+        self.least_roughness = min(self.least_roughness, 0.0 if roughness is None else roughness)
 
     def note_emission(self, *values):
         """Note that the closure at hand emits by these values (`Value`) and its weight."""

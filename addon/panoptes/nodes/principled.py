@@ -73,7 +73,9 @@ def principled(use, weight):
         assign('coat_normal', use.normal(names['coat_normal']))
 
     if any(runs(field) for field in ('specular', 'metallic', 'coat', 'transmission')):
-        compiler.facts['glossy'] = True
+        compiler.note_glossy(use.constant(names['roughness']))
+    if runs('coat'):
+        compiler.note_glossy(use.constant(names['coat_roughness']))
     if runs('transmission'):
         compiler.facts['transmission'] = True
     if runs('coat') or runs('sheen'):

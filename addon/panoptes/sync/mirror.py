@@ -75,9 +75,9 @@ class Mirror:
         if held is None or held[0] != structure:
             self._materials.pop(material_id, None)
             self.engine.set_material(material_id, name, shader.code, shader.params, textures,
-                                     shader.facts)
+                                     dict(shader.facts, least_roughness=shader.least_roughness))
         elif held[1] != values:
-            self.engine.set_material_params(material_id, shader.params)
+            self.engine.set_material_params(material_id, shader.params, shader.least_roughness)
         self._materials[material_id] = (structure, values)
 
     def put_world(self, shader, textures):
