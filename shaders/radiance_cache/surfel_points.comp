@@ -16,27 +16,30 @@ layout(location = 0) uniform uint count;  // solid voxels
 
 const int LINES = 16;  // over the triangle's part, one of which the point lies on
 
-// The ends of the triangle's part of the voxel on a line across the columns.
-vec2 ends_on_line(Placed t, float y, ivec3 voxel) {
-  float low = float(voxel.x + 1), high = float(voxel.x);
-  vec2 corners[4] = vec2[4](t.p0.xy, t.p1.xy, t.p2.xy, t.p0.xy);
-  for (int i = 0; i < 3; ++i) {
-    vec2 p = corners[i], q = corners[i + 1];
+// Where on a line at `y` a polygon lies; first above last where it does not.
+vec2 ends_on_line(vec2 corners[5], float y) {
+  vec2 ends = vec2(1.0e30, -1.0e30);
+  for (int i = 0; i < 5; ++i) {
+    vec2 p = corners[i], q = corners[(i + 1) % 5];
     if (y < min(p.y, q.y) || y > max(p.y, q.y)) continue;
     float x = p.x + (q.x - p.x) * (q.y != p.y ? (y - p.y) / (q.y - p.y) : 0.0);
-    low = min(low, x);
-    high = max(high, x);
+    ends = vec2(min(ends.x, x), max(ends.y, x));
   }
-  vec2 ends = clamp(vec2(low, high), float(voxel.x), float(voxel.x + 1));
-  // Where the plane enters and leaves the voxel's depths.
-  float start = t.p1.z + t.slope.y * (y - t.p1.y), slope = t.slope.x;
-  vec2 depths = vec2(voxel.z, voxel.z + 1);
-  if (abs(slope) < 1.0e-5) {
-    bool within = start + 1.0e-3 >= depths.x && start - 1.0e-3 <= depths.y;
-    return within ? ends : ends.xx;
+  return ends;
+}
+
+// The lines at which a polygon lies within the unit square.
+vec2 lines_of(vec2 corners[5]) {
+  vec2 lines = vec2(1.0e30, -1.0e30);
+  for (int i = 0; i < 5; ++i) {
+    vec2 p = corners[i], q = corners[(i + 1) % 5];
+    if (max(p.x, q.x) < 0.0 || min(p.x, q.x) > 1.0) continue;
+    float run = q.x - p.x, steepness = run != 0.0 ? (q.y - p.y) / run : 0.0;
+    vec2 ends = p.yy + (clamp(vec2(p.x, q.x), 0.0, 1.0) - p.x) * steepness;
+    if (run == 0.0) ends = vec2(p.y, q.y);
+    lines = vec2(min(lines.x, min(ends.x, ends.y)), max(lines.y, max(ends.x, ends.y)));
   }
-  vec2 at = t.p1.x + (depths - start) / slope;
-  return clamp(ends, min(at.x, at.y), max(at.x, at.y));
+  return clamp(lines, 0.0, 1.0);
 }
 
 void main() {
@@ -58,33 +61,32 @@ void main() {
   ivec3 at = axis_last(voxel, t.axis);
 
   // One of the lines by the length that the triangle has on it, and evenly along it.
+  vec2 corners[5];
+  cut_to_layer(t, at, corners);
+  vec2 lines = lines_of(corners), chosen = vec2(0.5);
   uint seed = hash(voxel_seed(primitive, voxel, of_volume) + 1u);
-  float low = max(min(t.p0.y, min(t.p1.y, t.p2.y)), float(at.y));
-  float high = min(max(t.p0.y, max(t.p1.y, t.p2.y)), float(at.y + 1));
   float sum = 0.0, shift = unit_float(hash(seed + 1u)), along = unit_float(hash(seed + 2u));
-  vec2 chosen = clamp((t.p0.xy + t.p1.xy + t.p2.xy) / 3.0, vec2(at.xy), vec2(at.xy + 1));
   for (int i = 0; i < LINES; ++i) {
-    float y = mix(low, high, (float(i) + shift) / float(LINES));
-    vec2 ends = ends_on_line(t, y, at);
-    float part = max(ends.y - ends.x, 0.0);
+    float y = mix(lines.x, lines.y, (float(i) + shift) / float(LINES));
+    vec2 ends = clamp(ends_on_line(corners, y), 0.0, 1.0);
+    // A point counts, too, where rounding leaves no more of the triangle.
+    float part = max(ends.y - ends.x, 0.0) + 1.0e-20;
     sum += part;
     seed = hash(seed);
-    if (part > 0.0 && unit_float(seed) * sum < part) chosen = vec2(mix(ends.x, ends.y, along), y);
+    if (unit_float(seed) * sum < part) chosen = vec2(mix(ends.x, ends.y, along), y);
   }
-  vec3 place = vec3(chosen, t.p1.z + dot(t.slope, chosen - t.p1.xy));
 
   // Its barycentric coordinates, as seen along the axis.
-  vec3 base = axis_last((t0.xyz - volume.low.xyz) / voxel_size(volume), t.axis);
-  vec2 offset = place.xy - base.xy;
-  vec2 a = axis_last(e1, t.axis).xy / voxel_size(volume), b = axis_last(e2, t.axis).xy / voxel_size(volume);
+  float size = voxel_size(volume);
+  vec3 base = axis_last((t0.xyz - volume.low.xyz) / size, t.axis) - vec3(at);
+  vec2 offset = chosen - base.xy, a = axis_last(e1, t.axis).xy / size, b = axis_last(e2, t.axis).xy / size;
   float determinant = a.x * b.y - a.y * b.x;
   float inverse = determinant != 0.0 ? 1.0 / determinant : 0.0;
   float u = clamp((offset.x * b.y - offset.y * b.x) * inverse, 0.0, 1.0);
   float v = clamp((a.x * offset.y - a.y * offset.x) * inverse, 0.0, 1.0 - u);
   hits[number] = TracedHit(0.0, primitive, u, v);
-  vec3 position = clamp(axis_back(place, t.axis), vec3(voxel), vec3(voxel + 1)) * voxel_size(volume) +
-                  volume.low.xyz;
-  float area = float(texelFetch(voxels, int(index)).x) / AREA_STEPS * voxel_size(volume) *
-               voxel_size(volume);
+  vec3 low = volume.low.xyz + vec3(voxel) * size;
+  vec3 position = clamp(t0.xyz + u * e1 + v * e2, low, low + size);
+  float area = float(texelFetch(voxels, int(index)).x) / AREA_STEPS * size * size;
   surfels[number] = Surfel(vec4(position, area), uvec4(hash(seed + 3u), 0u, 0u, floatBitsToUint(t0.w)));
 }

@@ -99,15 +99,24 @@ float area_beside(vec2 p, vec2 q) {
 // How far `z` lies from a to b, 0 .. 1.
 float share_of(float z, float a, float b) { return clamp((z - a) / max(b - a, 1.0e-20), 0.0, 1.0); }
 
-// Area of the triangle within a voxel, in faces of a voxel: cut by the two planes across the axis it
-// is a polygon of five corners, whose edges say what of it lies in the column.
-float area_within(Placed t, ivec3 voxel) {
+// The triangle between the two planes across the axis that bound a voxel: a polygon of five corners,
+// relative to the voxel's lowest one, as seen along the axis. Some fall together.
+void cut_to_layer(Placed t, ivec3 voxel, out vec2 corners[5]) {
   vec3 a = t.p0 - vec3(voxel), b = t.p1 - vec3(voxel), c = t.p2 - vec3(voxel);
-  vec2 long0 = mix(a.xy, c.xy, share_of(0.0, a.z, c.z)), long1 = mix(a.xy, c.xy, share_of(1.0, a.z, c.z));
   vec2 bent0 = b.z > 0.0 ? mix(a.xy, b.xy, share_of(0.0, a.z, b.z)) : mix(b.xy, c.xy, share_of(0.0, b.z, c.z));
   vec2 bent1 = b.z > 1.0 ? mix(a.xy, b.xy, share_of(1.0, a.z, b.z)) : mix(b.xy, c.xy, share_of(1.0, b.z, c.z));
-  vec2 bend = b.z < 0.0 ? bent0 : b.z > 1.0 ? bent1 : b.xy;
-  float sum = area_beside(long0, long1) + area_beside(long1, bent1) + area_beside(bent1, bend) +
-              area_beside(bend, bent0) + area_beside(bent0, long0);
+  corners[0] = mix(a.xy, c.xy, share_of(0.0, a.z, c.z));
+  corners[1] = mix(a.xy, c.xy, share_of(1.0, a.z, c.z));
+  corners[2] = bent1;
+  corners[3] = b.z < 0.0 ? bent0 : b.z > 1.0 ? bent1 : b.xy;
+  corners[4] = bent0;
+}
+
+// Area of the triangle within a voxel, in faces of a voxel.
+float area_within(Placed t, ivec3 voxel) {
+  vec2 corners[5];
+  cut_to_layer(t, voxel, corners);
+  float sum = 0.0;
+  for (int i = 0; i < 5; ++i) sum += area_beside(corners[i], corners[(i + 1) % 5]);
   return abs(sum) * t.steepness;
 }
