@@ -67,6 +67,7 @@ struct RenderStats {
   std::vector<std::pair<std::string, double>> passes;  // name, ms
   double build_ms = 0, trace_ms = 0, total_ms = 0;
   int64_t rays = 0;
+  radiance_cache::Occupied cache;
   int64_t memory_bytes = 0;
   std::optional<double> estimated_error;
   std::vector<std::string> warnings;

@@ -59,6 +59,9 @@ class RadianceCache {
   void begin(const Frame& frame);
   void release();
   bool runs() const { return runs_; }
+  Occupied occupied() const {
+    return runs_ ? Occupied{active_, volume_.volumes().count.y} : Occupied{};
+  }
 
   // Lamps light the surfels batch by batch: light() once before them all, then for each batch
   // `lamps` binds it to the program that it is called with. Positions of lamps are relative to `origin`.

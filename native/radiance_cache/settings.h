@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include <array>
+#include <cstdint>
 
 namespace panoptes::radiance_cache {
 
@@ -16,6 +17,11 @@ constexpr int kMostBounces = 8, kMostCascades = 3;
 struct Region {
   glm::dmat4 world_to_box{1.0};  // the box is [-1, 1]^3
   float luminance = 1, chrominance = 1;
+};
+
+// How many cells hold light, of all that there are.
+struct Occupied {
+  int64_t cells = 0, lattice = 0;
 };
 
 struct Settings {

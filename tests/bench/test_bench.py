@@ -38,6 +38,11 @@ def bench_occlusion(section, scene, *arguments):
                  "--samples", "4", "--reference-samples", "64", "--estimator", "alchemy", *arguments)[section]
 
 
+def bench_cache(scene, *arguments):
+    """What that of the radiance cache finds on a scene of ours, at a few pixels."""
+    return bench("cache/run.py", "--scene", ROOT / "blend_scenes" / f"{scene}.blend", "--size", "64x36", "--samples", "1", "--repeat", "1", *arguments)
+
+
 @pytest.mark.slow
 def test_paths_are_measured_beside_cycles():
     found = bench_paths()
@@ -106,3 +111,41 @@ def test_the_cost_of_views_is_told_beside_their_samples():
         assert rows[f"{views} + IS"]["samples"] < rows[views]["samples"]
         assert rows[views]["time"] > 0.0
     assert rows["phantom pair + IS"]["draw ms"] > 0.0
+
+
+@pytest.mark.slow
+def test_cached_light_is_measured_against_both_references(tmp_path):
+    found, = bench_cache("two_spots", "--section", "error", "--reference-samples", "16", "--bounces", "2", "--encoding", "y3co1cg1", "--encoding", "rgb3",
+                         "--pictures", tmp_path)["error"]
+    rows = found["rows"]
+    assert set(rows) == {"paths, 2 bounces", "y3co1cg1, 2 bounces", "rgb3, 2 bounces"}
+    assert abs(rows["paths, 2 bounces"]["energy C"] - 1.0) < 0.1
+    for name in ("y3co1cg1, 2 bounces", "rgb3, 2 bounces"):
+        assert rows[name]["energy"] > 0.0 and rows[name]["both"] < rows[name]["paths"]
+    # Chrominance without direction shows where red and green light meet.
+    assert rows["y3co1cg1, 2 bounces"]["lab"] > rows["rgb3, 2 bounces"]["lab"]
+    assert (tmp_path / "error_two_spots_2.png").stat().st_size > 0
+
+
+@pytest.mark.slow
+def test_what_makes_the_cache_cheaper_is_told_step_by_step():
+    found = bench_cache("two_spots", "--section", "speed", "--part", "5.1", "--part", "5.12", "--section", "stability", "--frames", "2",
+                        "--flicker-samples", "4")
+    rows = found["speed"]["5.1"]["two_spots"]["rows"]
+    assert rows["all cells, RGB3"]["occupancy"] == 1.0 > rows["+ occupancy"]["occupancy"] > 0.0
+    assert all(row["GI ms"] > 0.0 for row in rows.values())
+    # Stages are summed in their order.
+    for row in found["speed"]["5.12"]["rows"].values():
+        times = [value for name, value in row.items() if name != "occupancy"]
+        assert times == sorted(times) and times[-1] > 0.0
+    for row in found["stability"]["two_spots"].values():
+        assert 0.0 <= row["frame mean"] <= row["frame largest"] <= row["block largest"]
+
+
+@pytest.mark.slow
+def test_a_whole_picture_is_measured_beside_cycles_first_sample():
+    found = bench_cache("two_spots", "--section", "frame", "--reference-samples", "16", "--frame-samples", "1")["frame"]["two_spots"]
+    assert set(found["rows"]) == {"CYCLES", "CYCLES anew", "PANOPTES 1"}
+    for row in found["rows"].values():
+        assert row["s"] > 0.0 and row["cpu s"] > 0.0 and 0.0 < row["srgb rmse"] < 0.5
+    assert found["rows"]["PANOPTES 1"]["passes"]

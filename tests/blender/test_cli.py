@@ -150,7 +150,7 @@ class TestRenders:
         stats = json.loads((tmp_path / 'out.json').read_text())
         assert stats['size'] == [40, 30] and stats['samples'] == 1
         for key in ('device', 'effects', 'passes', 'sync_ms', 'build_ms', 'trace_ms', 'total_ms',
-                    'rays', 'memory_bytes', 'estimated_error', 'warnings'):
+                    'rays', 'cache', 'memory_bytes', 'estimated_error', 'warnings'):
             assert key in stats
         assert all({'name', 'runs', 'reason', 'ms'} <= set(effect) for effect in stats['effects'])
         assert sorted(p.name for p in tmp_path.iterdir()) == ['out.json', 'out.png', 'scene.blend']

@@ -68,6 +68,7 @@ engine::RenderStats stats() {
   s.build_ms = 1.5;
   s.trace_ms = 2.5;
   s.total_ms = 4.25;
+  s.cache = {.cells = 5, .lattice = 64};
   s.memory_bytes = 1LL << 40;
   s.estimated_error = 0.0625;
   s.warnings = {"a", "b"};
@@ -84,6 +85,8 @@ TEST(StatsJson, HoldsTheStatistics) {
   EXPECT_EQ(j.at("trace_ms").number, 2.5);
   EXPECT_EQ(j.at("total_ms").number, 4.25);
   EXPECT_EQ(j.at("rays").number, 0);
+  EXPECT_EQ(j.at("cache").at("cells").number, 5);
+  EXPECT_EQ(j.at("cache").at("lattice").number, 64);
   EXPECT_EQ(j.at("memory_bytes").number, double(1LL << 40));
   EXPECT_EQ(j.at("estimated_error").number, 0.0625);
   ASSERT_EQ(j.at("effects").list.size(), 2u);
