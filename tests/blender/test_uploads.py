@@ -105,6 +105,13 @@ def grid(name, side=SIDE):
 
 @pytest.fixture
 def uploads(scene, native_module):
+    """A thousand objects without indirect light, which is gathered anew after most edits and sent then."""
+    scene.panoptes.radiance_cache.enabled = False
+    return thousand_objects(scene)
+
+
+def thousand_objects(scene):
+    """Return the `Uploads` of tiles of one mesh over a ground, under a sun and a grey world."""
     native.use_factory(None)
     scene.render.resolution_x, scene.render.resolution_y = 16, 12
     scene.panoptes.realtime.shadow_resolution = 64
@@ -173,12 +180,6 @@ class TestObjects:
         # The list of what lamps do not see is made with room to spare.
         uploads.of(lambda: hide('Tile 4'))
         assert_sent(uploads, lambda: hide('Tile 5'), INSTANCE + 3 * DRAW)
-
-    def test_indirect_light(self, uploads):
-        def edit():
-            bpy.data.objects['Tile 6'].panoptes.indirect_luminance = 0.5
-        # Lamps see nothing of it: their maps are kept.
-        assert_sent(uploads, edit, 4, lamps_see=False)
 
     def test_add(self, uploads):
         def edit():
@@ -276,3 +277,21 @@ class TestShading:
             node.inputs['Color'].default_value = (0.5, 0.0, 1.0, 1.0)
         # Its parameters, and nine coefficients of its light.
         assert_sent(uploads, edit, 2 * VEC4 + 9 * VEC4, lamps_see=False)
+
+
+class TestIndirectLight:
+    """What it adds where it is on."""
+
+    @pytest.fixture
+    def lit(self, scene, native_module):
+        return thousand_objects(scene)
+
+    def test_a_resting_scene_sends_nothing_for_it(self, lit):
+        assert lit.frame['uploaded_bytes'] + lit.relit <= FRAME
+        assert lit.of(lambda: None) == (0, 0)
+
+    def test_strength_on_an_object(self, lit):
+        def edit():
+            bpy.data.objects['Tile 6'].panoptes.indirect_luminance = 0.5
+        # Neither does it have to be gathered anew, nor do lamps see anything of it.
+        assert lit.of(edit) == (4, 0)
