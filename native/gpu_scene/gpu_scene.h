@@ -82,6 +82,8 @@ class GpuScene {
 
   // Binds what every program that includes gpu_scene/geometry.glsl reads.
   void bind_geometry() const;
+  // Its instances alone, for another unit.
+  void bind_instances(int unit) const { instances_.bind(unit); }
   // Binds parameters and images and sets the uniform `material_block` of the program in use.
   void bind_shading(const GpuShading& shading) const;
 

@@ -27,6 +27,7 @@ class InstanceList {
   // Where an instance of the scene is in the buffer; kNotPlaced for those that show no mesh.
   uint32_t place_of(size_t index) const { return places_[index]; }
   void bind() const;
+  void bind(int unit) const { buffer_.texture().bind(unit); }
 
  private:
   using Record = std::array<uint32_t, 16>;  // as geometry.glsl describes it

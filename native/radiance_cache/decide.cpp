@@ -27,7 +27,7 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                            : light      ? "light reaches surfaces by way of others, and the world's past them"
                            : lamps      ? "no bounces are allowed, and the world is black"
                                         : "nothing shines",
-                           surfaces && !runs));
+                           surfaces && (!s.enabled || (lamps && !bounced && !facts.world))));
   const char* idle = "there is no radiance cache";
   const bool first = runs && lamps && bounced;
   const bool rsm = s.first_bounce == FirstBounce::kRsm;

@@ -1,4 +1,5 @@
 #include "radiance_cache/bindings.h"
+#include "rasterize/g_buffer.h"
 #include "radiance_cache/radiance_cache.h"
 
 #include <fmt/format.h>
@@ -58,6 +59,9 @@ void LookUpOptions::add_defines(gl::ProgramSource& source) const {
   source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(split)));
   source.defines.push_back(fmt::format("CACHE_UNIT {}", unit));
   source.defines.push_back(fmt::format("CACHE_BLOCK {}", block));
+  source.defines.push_back(fmt::format("CACHE_SCALES {}", int(scaled)));
+  source.defines.push_back(fmt::format("SCALES_UNIT {}", unit + 2));
+  source.defines.push_back(fmt::format("SCALES_BLOCK {}", block + 1));
 }
 
 gl::ProgramSource find_seeds_program() {
@@ -96,6 +100,18 @@ gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool 
   if (cache) options.add_defines(source);
   source.defines.push_back(fmt::format("LAMPS {}", int(lamps)));
   source.defines.push_back(fmt::format("CACHE_LIGHT {}", int(cache)));
+  return source;
+}
+
+gl::ProgramSource picture_program(Picture picture, const LookUpOptions& options,
+                                  const film::Film& film) {
+  gl::ProgramSource source = compute("radiance cache picture", "radiance_cache/picture.comp");
+  source.defines = {"GEOMETRY 1", "OCCUPANCY 2", "LOBES 3", "LIGHT 4", "CLIPPED 5",
+                    fmt::format("PICTURE {}", int(picture)), "MARCH_STEPS 0"};
+  add_volume(source);
+  options.add_defines(source);
+  rasterize::GBufferOptions().add_defines(source);
+  film.add_defines(source);
   return source;
 }
 

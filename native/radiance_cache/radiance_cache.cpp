@@ -3,6 +3,9 @@
 #include "gl/dispatch.h"
 #include "radiance_cache/bindings.h"
 #include "radiance_cache/placement.h"
+#include "radiance_cache/scales_shared.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +31,20 @@ void want(gl::Buffer& buffer, gl::Texture& texels, GLenum format, int64_t bytes)
 
 }  // namespace
 
+namespace {
+
+// Whether bounced light is anywhere multiplied by something else than 1.
+bool scales(const RadianceCache::Frame& frame) {
+  const Settings& s = frame.settings;
+  const auto& instances = frame.scene.instances();
+  return s.luminance != 1 || s.chrominance != 1 || s.region_count > 0 ||
+         std::any_of(instances.begin(), instances.end(), [](const scene::Instance& instance) {
+           return instance.indirect_scale != glm::vec2(1);
+         });
+}
+
+}  // namespace
+
 void RadianceCache::begin(const Frame& frame) {
   runs_ = plan::runs(frame.plan, "radiance_cache");
   if (!runs_) {
@@ -40,8 +57,9 @@ void RadianceCache::begin(const Frame& frame) {
   world_light_ = plan::runs(frame.plan, "cache_world");
   lamps_ = plan::runs(frame.plan, "cache_first_bounce");
   bounces_ = settings_.bounces;
+  scaled_ = bounces_ > 0 && scales(frame);
   split_ = world_light_ && bounces_ > 0 &&
-           (plan::runs(frame.plan, "pass_diffdir") || plan::runs(frame.plan, "pass_diffind") ||
+           (scaled_ || plan::runs(frame.plan, "pass_diffdir") || plan::runs(frame.plan, "pass_diffind") ||
             plan::runs(frame.plan, "pass_glossdir") || plan::runs(frame.plan, "pass_glossind"));
   list_origin_ = frame.triangles.origin();
   grids_ = choose_grids(frame.scene.bounds(), frame.camera, settings_);
@@ -63,7 +81,8 @@ void RadianceCache::release() {
   grids_.clear();
   volume_.release();
   for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_}) *texture = gl::Texture();
-  for (gl::Buffer* buffer : {&list_, &seeds_, &met_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_})
+  for (gl::Buffer* buffer : {&list_, &seeds_, &met_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
+                            &scales_block_})
     *buffer = gl::Buffer();
 }
 
@@ -196,13 +215,45 @@ void RadianceCache::write_block(gl::Buffer& block, const glm::dvec3& origin) con
 }
 
 LookUpOptions RadianceCache::look_up(int unit, int block) const {
-  return {settings_.encoding, split_, unit, block};
+  return {settings_.encoding, split_, scaled_, unit, block};
 }
 
-void RadianceCache::bind(const LookUpOptions& options, const glm::dvec3& origin) {
+void RadianceCache::bind(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
+                         const glm::dvec3& origin) {
   write_block(view_block_, origin);
   cells_texels_.bind(options.unit);
   glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
+  if (options.scaled) bind_scales(options, gpu, origin);
+}
+
+void RadianceCache::bind_scales(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
+                                const glm::dvec3& origin) {
+  shared::CacheScales scales{};
+  scales.scale = {settings_.luminance, settings_.chrominance, 0, 0};
+  scales.count.x = settings_.region_count;
+  for (int i = 0; i < settings_.region_count; ++i) {
+    const Region& region = settings_.regions[size_t(i)];
+    scales.regions[i] = {glm::mat4(glm::translate(region.world_to_box, origin)),
+                         {region.luminance, region.chrominance, 0, 0}};
+  }
+  scales_block_.reserve(sizeof scales);
+  scales_block_.write(0, sizeof scales, &scales);
+  glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block) + 1, scales_block_.id());
+  gpu.bind_instances(options.unit + 2);
+}
+
+void RadianceCache::show(const LookUpOptions& options, const glm::dvec3& origin,
+                         const film::Film& film) {
+  gl::PassScope scope(timer_, "radiance_cache_picture");
+  programs_.get(picture_program(settings_.picture, options, film)).use();
+  bind_volume();
+  write_block(view_block_, origin);
+  cells_texels_.bind(options.unit);
+  glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
+  seeds_texels_.bind(0);
+  const glm::vec3 offset(origin - list_origin_);
+  glUniform3f(2, offset.x, offset.y, offset.z);
+  film.bind();
 }
 
 }  // namespace panoptes::radiance_cache

@@ -7,6 +7,7 @@
 // geometry rests. Nothing here depends on the camera but where the volumes lie.
 #pragma once
 
+#include "film/film.h"
 #include "gl/context.h"
 #include "gl/pass_timer.h"
 #include "gl/program.h"
@@ -31,8 +32,9 @@ namespace panoptes::radiance_cache {
 struct LookUpOptions {
   Encoding encoding = Encoding::kY3Co1Cg1;
   bool split = false;  // world and bounced light are told apart
+  bool scaled = false; // bounced light is multiplied by what the artist says; with `split`
   int unit = 0;        // texture unit of the cells
-  int block = 0;       // binding of the uniform block
+  int block = 0;       // binding of the uniform block; the scales' is the next
   void add_defines(gl::ProgramSource& source) const;
 };
 
@@ -82,20 +84,25 @@ class RadianceCache {
   double voxel() const { return grids_.empty() ? 0 : grids_.front().cell / grids_.front().voxels; }
   // For look-ups about points relative to `origin`, by the program in use.
   LookUpOptions look_up(int unit, int block) const;
-  void bind(const LookUpOptions& options, const glm::dvec3& origin);
+  void bind(const LookUpOptions& options, const gpu_scene::GpuScene& gpu, const glm::dvec3& origin);
+
+  // Puts the settings' picture into the film's Combined, for a sample whose G-buffer is bound.
+  void show(const LookUpOptions& options, const glm::dvec3& origin, const film::Film& film);
 
  private:
   void list_cells();
   void march();
   void bounce(bool cache);
   void gather_rays(bool bounced);
+  void bind_scales(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
+                   const glm::dvec3& origin);
   void write_block(gl::Buffer& block, const glm::dvec3& origin) const;
   void bind_lattice(int location) const;
   void bind_volume() const;
 
   gl::ProgramCache& programs_;
   gl::PassTimer& timer_;
-  bool runs_ = false, split_ = false, world_light_ = false, lamps_ = false;
+  bool runs_ = false, split_ = false, scaled_ = false, world_light_ = false, lamps_ = false;
   int bounces_ = 0;
   Settings settings_;
   uint32_t seed_ = 0;
@@ -106,7 +113,7 @@ class RadianceCache {
   GeometryVolume volume_;
   gl::Buffer list_, seeds_, met_, radiosity_, direct_, cells_;
   gl::Texture seeds_texels_, met_texels_, radiosity_texels_, cells_texels_;
-  gl::Buffer list_block_, view_block_;  // CacheVolumes about the list's origin, and about the camera
+  gl::Buffer list_block_, view_block_, scales_block_;  // CacheVolumes about the list's origin, and about the camera
   uint32_t active_ = 0;
 };
 
@@ -120,5 +127,7 @@ struct GatherOptions {
 gl::ProgramSource gather_program(const GatherOptions& options);
 gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache);
 gl::ProgramSource light_surfels_program(bool shadows);
+gl::ProgramSource picture_program(Picture picture, const LookUpOptions& options,
+                                  const film::Film& film);
 
 }  // namespace panoptes::radiance_cache

@@ -11,7 +11,7 @@ namespace panoptes::radiance_cache {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kBlurredWidth = kWorldWidth / 2, kBlurredHeight = kWorldHeight / 2;
+constexpr int kBlurredWidth = kWorldWidth / 4, kBlurredHeight = kWorldHeight / 4;
 
 glm::dvec3 direction(int x, int y, int width, int height) {
   const double phi = (x + 0.5) / width * 2 * kPi, theta = (y + 0.5) / height * kPi;
@@ -60,11 +60,16 @@ std::vector<glm::vec4> blurred_world(std::span<const glm::vec4> radiance, int di
     double solid_angle;
   };
   std::vector<Texel> texels;
-  for (int v = 0; v < kWorldHeight; ++v)
-    for (int u = 0; u < kWorldWidth; ++u)
-      texels.push_back({direction(u, v, kWorldWidth, kWorldHeight),
-                        glm::dvec3(radiance[size_t(v * kWorldWidth + u)]),
-                        solid_angle(v, kWorldWidth, kWorldHeight)});
+  // Four texels at a time are fine enough to be blurred.
+  constexpr int kWidth = kWorldWidth / 2, kHeight = kWorldHeight / 2;
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) {
+      const auto row = radiance.begin() + 2 * v * kWorldWidth + 2 * u, below = row + kWorldWidth;
+      const glm::dvec4 sum = glm::dvec4(row[0]) + glm::dvec4(row[1]) + glm::dvec4(below[0]) +
+                             glm::dvec4(below[1]);
+      texels.push_back({direction(u, v, kWidth, kHeight), 0.25 * glm::dvec3(sum),
+                        solid_angle(v, kWidth, kHeight)});
+    }
   std::vector<glm::vec4> result;
   for (int y = 0; y < kBlurredHeight; ++y)
     for (int x = 0; x < kBlurredWidth; ++x) {
@@ -98,7 +103,7 @@ void WorldLight::update(const scene::World& world, const gpu_scene::GpuScene& gp
   radiance_.assign(kTexels, glm::vec4(world.constant.value_or(glm::vec3(0)), 0));
   if (!world.constant && gpu.world()) {
     // As many directions as the world's images have texels, within what a frame can bear.
-    const int points = std::clamp(gpu.world_image_width() / kWorldWidth, 4, 32);
+    const int points = std::clamp(gpu.world_image_width() / kWorldWidth, 2, 16);
     const gl::Buffer measured(kTexels * 16);
     programs.get(world_radiance_program(*gpu.world())).use();
     gpu.bind_shading(*gpu.world());
@@ -107,7 +112,12 @@ void WorldLight::update(const scene::World& world, const gpu_scene::GpuScene& gp
     gl::dispatch(kTexels, GL_BUFFER_UPDATE_BARRIER_BIT);
     measured.read(0, measured.bytes(), radiance_.data());
   }
-  const std::array<glm::vec4, 9> coefficients = world_harmonics(radiance_);
+  std::array<glm::vec4, 9> coefficients = world_harmonics(radiance_);
+  if (world.constant) {
+    // Only the first harmonic, 1 / sqrt(4 pi), has a mean.
+    coefficients = {};
+    coefficients[0] = glm::vec4(*world.constant * float(std::sqrt(4 * kPi)), 0);
+  }
   if (!harmonics_) harmonics_ = gl::Buffer(int64_t(sizeof coefficients));
   harmonics_.write(0, int64_t(sizeof coefficients), coefficients.data());
   directions_ = 0;

@@ -14,14 +14,14 @@
 namespace panoptes::radiance_cache {
 
 // A map of directions: latitudes from +Z down, longitudes from +X on, rows first.
-constexpr int kWorldWidth = 64, kWorldHeight = 32;
+constexpr int kWorldWidth = 128, kWorldHeight = 64;
 
 // Coefficients of the first nine harmonics (base/spherical_harmonics.glsl) of the radiance in such a
 // map. No GL.
 std::array<glm::vec4, 9> world_harmonics(std::span<const glm::vec4> radiance);
 
 // The map seen through a lobe as wide as one of `directions` rays that share the sphere: cosines to
-// a power whose lobe has 4 pi / directions of solid angle. A map of half the width and height.
+// a power whose lobe has 4 pi / directions of solid angle. A map of a quarter of the width and height.
 // No GL.
 std::vector<glm::vec4> blurred_world(std::span<const glm::vec4> radiance, int directions);
 

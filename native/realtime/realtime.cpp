@@ -66,6 +66,7 @@ gl::ProgramSource compose_program(const ComposeOptions& options, const film::Fil
                     fmt::format("PASS_OCCLUSION {}", int(options.pass_occlusion)),
                     fmt::format("SPECULAR_RAYS {}", int(options.specular_rays)),
                     fmt::format("RADIANCE_CACHE {}", int(options.cache.has_value())),
+                    fmt::format("SCALED {}", int(options.cache && options.cache->scaled)),
                     fmt::format("AMBIENT {}", int(options.cache || options.world_light))};
   if (options.cache) options.cache->add_defines(source);
   options.surfaces.add_defines(source);
@@ -202,7 +203,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
   if (cache_.runs() && index == 0) cache_.begin_lamps();
-  if (specular_rays_.runs() && !shows_occlusion()) trace_specular(index, view, around, cancelled);
+  if (specular_rays_.runs() && !shows_occlusion() && !shows_cache()) trace_specular(index, view, around, cancelled);
   if (lamps_)
     add_lamps(index, view, gpu, cancelled);
   else
@@ -223,12 +224,14 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
 
   if (specular_rays_.runs() && (world_light_ || cache_.runs())) {
     const std::optional<radiance_cache::LookUpOptions> cache = look_up();
-    specular_rays_.add_surroundings({world_light_, cache}, [&] { bind_ambient(cache, view); });
+    specular_rays_.add_surroundings({world_light_, cache}, [&] { bind_ambient(cache, gpu, view); });
   }
-  if (shows_occlusion())
+  if (shows_cache())
+    show_cache(view, film);
+  else if (shows_occlusion())
     show_picture(film);
   else
-    compose(view, film);
+    compose(gpu, view, film);
 }
 
 void Realtime::trace_specular(uint32_t index, const shared::View& view, const Surroundings& around,
@@ -312,6 +315,14 @@ void Realtime::find_occlusion(uint32_t index, const shared::View& view,
   }
 }
 
+void Realtime::show_cache(const shared::View& view, film::Film& film) {
+  g_buffer_.bind_visibility();
+  g_buffer_.bind_surfaces();
+  cache_.show(*look_up(), glm::dvec3(glm::vec3(view.world_origin)), film);
+  dispatch_pixels();
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
 void Realtime::show_picture(film::Film& film) {
   gl::PassScope scope(timer_, "ambient_occlusion_picture");
   programs_.get(ambient_occlusion::picture_program(settings_.occlusion.picture, film)).use();
@@ -328,12 +339,14 @@ std::optional<radiance_cache::LookUpOptions> Realtime::look_up() const {
 }
 
 void Realtime::bind_ambient(const std::optional<radiance_cache::LookUpOptions>& cache,
-                            const shared::View& view) {
+                            const gpu_scene::GpuScene& gpu, const shared::View& view) {
   if (world_light_) glBindBufferBase(GL_UNIFORM_BUFFER, 1, world_.harmonics().id());
-  if (cache) cache_.bind(*cache, glm::dvec3(glm::vec3(view.world_origin)));
+  if (cache) cache_.bind(*cache, gpu, glm::dvec3(glm::vec3(view.world_origin)));
+  if (cache && cache->scaled)
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, gpu.records().id());
 }
 
-void Realtime::compose(const shared::View& view, film::Film& film) {
+void Realtime::compose(const gpu_scene::GpuScene& gpu, const shared::View& view, film::Film& film) {
   gl::PassScope scope(timer_, "compose");
   const ComposeOptions options{.lamps = lamps_,
                          .background = background_,
@@ -365,7 +378,7 @@ void Realtime::compose(const shared::View& view, film::Film& film) {
     specular_rays_.direct().bind(6);
     specular_rays_.indirect().bind(13);
   }
-  bind_ambient(options.cache, view);
+  bind_ambient(options.cache, gpu, view);
   film.bind();
   dispatch_pixels();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);

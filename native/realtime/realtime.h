@@ -120,12 +120,16 @@ class Realtime {
   bool shows_occlusion() const {
     return settings_.occlusion.picture != ambient_occlusion::Picture::kNone && occlusion_.runs();
   }
+  bool shows_cache() const {
+    return settings_.cache.picture != radiance_cache::Picture::kNone && cache_.runs();
+  }
+  void show_cache(const shared::View& view, film::Film& film);
   void show_picture(film::Film& film);
   // Where programs look up the light around, and what they need for it.
   std::optional<radiance_cache::LookUpOptions> look_up() const;
   void bind_ambient(const std::optional<radiance_cache::LookUpOptions>& cache,
-                    const shared::View& view);
-  void compose(const shared::View& view, film::Film& film);
+                    const gpu_scene::GpuScene& gpu, const shared::View& view);
+  void compose(const gpu_scene::GpuScene& gpu, const shared::View& view, film::Film& film);
   void add_lamps(uint32_t index, const shared::View& view,
                  const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
 

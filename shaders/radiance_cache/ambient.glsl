@@ -1,8 +1,12 @@
 // Light that comes from everywhere but straight from lamps: of the radiance cache, or without one the
 // world's as if nothing stood in its way.
+#include "base/cpp_glsl.h"
 #include "base/spherical_harmonics.glsl"
 #if RADIANCE_CACHE
 #include "radiance_cache/look_up.glsl"
+#if CACHE_SCALES
+#include "radiance_cache/scales.glsl"
+#endif
 #endif
 
 struct Ambient {

@@ -10,6 +10,9 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform usampler2D visibility;
+#if SCALED
+layout(std430, binding = 0) readonly buffer Records { DrawRecord records[]; };
+#endif
 #if LAMPS
 layout(binding = 0) uniform sampler2D diffuse_light;
 #if GLOSSY
@@ -75,6 +78,9 @@ void main() {
 #if OCCLUSION
   vec4 occluded = texelFetch(occlusion, pixel, 0);
 #endif
+#if SCALED
+  uint instance = covered ? records[texelFetch(visibility, pixel, 0).x - 1u].instance : 0u;
+#endif
 #if AMBIENT
   float nv = max(dot(g.normal, v), 0.0);
   vec3 open = g.normal;
@@ -89,6 +95,9 @@ void main() {
 #endif
   Around here = look_around(g.position, g.geometric_normal);
   Ambient around = ambient_diffuse(here, open);
+#if SCALED
+  around.bounced = scaled_light(around.bounced, g.position, instance);
+#endif
   vec3 sent = visible * g.diffuse * diffuse_albedo(g.diffuse_roughness, nv);
 #if LAYERS
   sent += visible * g.sheen * sheen_albedo(g.sheen_roughness, nv);
@@ -99,6 +108,9 @@ void main() {
 #if GLOSSY
   if ((followed & FOLLOWS_SPECULAR) == 0u) {
     Ambient mirrored = ambient_radiance(here, reflect(-v, g.normal), g.roughness);
+#if SCALED
+    mirrored.bounced = scaled_light(mirrored.bounced, g.position, instance);
+#endif
     vec3 reflected = environment_reflectance(g.specular, g.grazing, g.roughness, nv) *
                      specular_visibility(visible, g.roughness, nv);
     glossy += reflected * mirrored.world;

@@ -139,6 +139,31 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
        },
        {"world_light", "world_background", "direct_light", "sun_shadows", "sun_cascades",
         "ambient_occlusion", "bent_normals", "deep_shadows"}},
+      {"one bounce of a lamp's light",
+       [](auto& f, auto& s) {
+         f.lamps[0] = 1;
+         s.cache.enabled = true;
+         s.cache.bounces = 1;
+         s.occlusion.strength = 0;
+       },
+       {"direct_light", "radiance_cache", "cache_first_bounce"}},
+      {"one bounce of the world's light",
+       [](auto& f, auto& s) {
+         f.world = true;
+         s.cache.enabled = true;
+         s.cache.bounces = 1;
+         s.occlusion.strength = 0;
+       },
+       {"world_light", "world_background", "radiance_cache", "cache_world", "cache_bounces"}},
+      {"reflective shadow maps in the viewport",
+       [](auto& f, auto& s) {
+         f.lamps[0] = 1;
+         s.cache.enabled = s.viewport = true;
+         s.cache.first_bounce = radiance_cache::FirstBounce::kRsm;
+         s.occlusion.strength = 0;
+       },
+       {"direct_light", "radiance_cache", "cache_rsm", "cache_bounces", "cache_blend"}},
+      {"a cache that nothing shines into", [](auto&, auto& s) { s.cache.enabled = true; }, {}},
       {"passes with a divisor",
        [](auto&, auto& s) {
          s.passes = pass_set({film::Pass::kDiffDir, film::Pass::kDepth});
@@ -148,6 +173,7 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
   for (const Case& c : cases) {
     scene::Facts facts = furnished();
     PlanSettings settings;
+    settings.cache.enabled = false;  // but in its own cases
     c.change(facts, settings);
     std::set<std::string> expected = c.runs;
     expected.insert({"surfaces", "pass_combined"});
@@ -183,7 +209,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 15u + 4u + 6u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 15u + 4u + 6u + 7u + size_t(film::kPassCount));
   }
 }
 

@@ -265,7 +265,13 @@ class Shaders : public ::testing::Test {
     };
     for (int encoding = 0; encoding < 6; ++encoding)
       for (bool split : {false, true}) {
-        const radiance_cache::LookUpOptions cache{radiance_cache::Encoding(encoding), split, 16, 2};
+        const radiance_cache::LookUpOptions cache{.encoding = radiance_cache::Encoding(encoding),
+                                                  .split = split,
+                                                  .scaled = split && encoding % 2 == 0,
+                                                  .unit = 16,
+                                                  .block = 2};
+        for (int picture = 1; picture < 6; ++picture)
+          add(radiance_cache::picture_program(radiance_cache::Picture(picture), cache, film));
         for (int bits : {0, 15, 80, 127}) with_film(film::PassSet().set(), true, bits, split, split, cache);
         add(radiance_cache::bounce_program(cache, split, true));
         add(specular_rays::surroundings_program({surfaces(15), false}, {split, cache}));
