@@ -21,7 +21,10 @@ constexpr int kTriangleUnit = 0, kVoxelUnit = 1, kWordUnit = 2;
 constexpr GLbitfield kBarriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                                  GL_BUFFER_UPDATE_BARRIER_BIT;
 
-constexpr double kAreaSteps = 65536;  // AREA_STEPS of voxels.glsl
+constexpr double kAreaSteps = 16384;  // AREA_STEPS of voxels.glsl
+
+// Bytes before the first of voxelize.comp's contenders, and of each.
+constexpr int64_t kContenders = 8, kContenderBytes = 12;
 
 // Textures are read as if a pixel was so wide, in voxels: many surfels together have the mean of an
 // image, and each has little of what lies beyond its voxel.
@@ -46,6 +49,7 @@ gl::ProgramSource volume_program(const char* name, const char* file) {
 
 gl::ProgramSource solid_program() { return volume_program("solid voxels", "solid.comp"); }
 gl::ProgramSource list_program() { return volume_program("list", "list_solid.comp"); }
+gl::ProgramSource winners_program() { return volume_program("winners", "winners.comp"); }
 gl::ProgramSource points_program() { return volume_program("points", "surfel_points.comp"); }
 gl::ProgramSource number_program() { return volume_program("numbers", "number_surfels.comp"); }
 
@@ -73,7 +77,8 @@ struct GeometryVolume::Frame {
 
 std::vector<gl::ProgramSource> volume_programs() {
   return {voxelize_program(false), voxelize_program(true), solid_program(),
-          list_program(),          points_program(),       number_program()};
+          list_program(),          winners_program(),      points_program(),
+          number_program()};
 }
 
 gl::ProgramSource surfels_program(const gpu_scene::GpuMaterial& material) {
@@ -144,11 +149,9 @@ void GeometryVolume::voxelize(const Frame& frame) {
   block_.write(0, sizeof volumes_, &volumes_);
   glBindBufferBase(GL_UNIFORM_BUFFER, kVolumesBlock, block_.id());
   reserve_texture(voxels_, voxel_texture_, GL_RG32UI, int64_t(word_count_) * 32 * 8);
-  voxels_.clear();
   reserve_texture(bits_, bit_texture_, GL_RG32UI, int64_t(word_count_) * 8);
   large_.reserve((int64_t(frame.triangles.count()) + 1) * 4);
-  winners_.reserve(4);
-  run_triangles(frame, false);
+  run_triangles(frame);
 
   const gl::Buffer count(4);
   const uint32_t zero = 0;
@@ -168,33 +171,50 @@ void GeometryVolume::voxelize(const Frame& frame) {
   bind(0, listed_);
   glUniform1ui(0, word_count_);
   gl::dispatch(word_count_, kBarriers);
+
   winners_.reserve(int64_t(candidates_) * 4);
   const uint32_t nobody = shared::NO_PRIMITIVE;
   glClearNamedBufferData(winners_.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &nobody);
-  if (candidates_) run_triangles(frame, true);
+  frame.programs.get(winners_program()).use();
+  voxel_texture_.bind(kVoxelUnit);
+  bit_texture_.bind(kWordUnit);
+  bind(0, contenders_);
+  bind(1, winners_);
+  glUniform1ui(0, contender_count_);
+  gl::dispatch(contender_count_, kBarriers);
 }
 
-void GeometryVolume::run_triangles(const Frame& frame, bool winning) {
-  if (frame.triangles.count() == 0) return;
+void GeometryVolume::run_triangles(const Frame& frame) {
   frame.triangles.texture().bind(kTriangleUnit);
-  bit_texture_.bind(kWordUnit);
-  bind(0, voxels_);
-  bind(1, large_);
-  bind(2, winners_);
-  for (int volume = 0; volume < volumes_.count.x; ++volume) {
-    const auto run = [&](bool large, uint32_t count) {
-      frame.programs.get(voxelize_program(large)).use();
-      glUniform1ui(0, count);
-      glUniform1ui(1, winning);
-      glUniform1i(3, volume);
-      glUniform3iv(4, MOST_CASCADES, &lattice_[0].x);
-      gl::dispatch(large ? count * 64 : count, kBarriers);
-    };
-    uint32_t large = 0;
-    large_.write(0, 4, &large);
-    run(false, frame.triangles.count());
-    large_.read(0, 4, &large);
-    if (large) run(true, large);
+  contender_count_ = std::max(2 * frame.triangles.count(), 1u << 16);
+  // Again with more room where there was too little: how many there are depends on the order in which
+  // triangles come, but little.
+  for (uint32_t room = 0; contender_count_ > room;) {
+    contenders_.reserve(kContenders + int64_t(contender_count_) * kContenderBytes);
+    room = uint32_t(std::min<int64_t>((contenders_.bytes() - kContenders) / kContenderBytes, INT32_MAX));
+    contender_count_ = 0;
+    contenders_.write(0, 4, &contender_count_);
+    voxels_.clear();
+    bind(0, voxels_);
+    bind(1, large_);
+    bind(2, contenders_);
+    for (int volume = 0; volume < volumes_.count.x; ++volume) {
+      const auto run = [&](bool large, uint32_t count) {
+        frame.programs.get(voxelize_program(large)).use();
+        glUniform1ui(0, count);
+        glUniform1ui(1, room);
+        glUniform1i(3, volume);
+        glUniform3iv(4, MOST_CASCADES, &lattice_[0].x);
+        gl::dispatch(large ? count * 64 : count, kBarriers);
+      };
+      uint32_t large = 0;
+      large_.write(0, 4, &large);
+      run(false, frame.triangles.count());
+      large_.read(0, 4, &large);
+      if (large) run(true, large);
+    }
+    contenders_.read(0, 4, &contender_count_);
+    if (contender_count_ > room) contender_count_ += contender_count_ / 8;
   }
 }
 

@@ -62,7 +62,7 @@ class GeometryVolume {
   struct Frame;  // what stays the same during an update()
   void place(std::span<const Grid> grids, const glm::vec3& origin);
   void voxelize(const Frame& frame);
-  void run_triangles(const Frame& frame, bool winning);
+  void run_triangles(const Frame& frame);
   void make_surfels(const Frame& frame);
   void evaluate(const Frame& frame);
   void number_words();
@@ -72,12 +72,12 @@ class GeometryVolume {
   int64_t geometry_revision_ = -1, surface_revision_ = -1;
   shared::CacheVolumes volumes_{};
   glm::ivec3 lattice_[MOST_CASCADES] = {};
-  uint32_t word_count_ = 0, candidates_ = 0, solid_ = 0;
+  uint32_t word_count_ = 0, contender_count_ = 0, candidates_ = 0, solid_ = 0;
   gl::Buffer block_, words_, surfels_;
   gl::Texture word_texture_, surfel_texture_;
   // Of voxelisation, kept until shapes change: area and key of voxels, bits before any vanished, and
   // the solid voxels among them with who was drawn for each.
-  gl::Buffer voxels_, large_, bits_, listed_, winners_;
+  gl::Buffer voxels_, large_, contenders_, bits_, listed_, winners_;
   gl::Texture voxel_texture_, bit_texture_;
   gl::Buffer drafts_, hits_;
   tracing::HitBins bins_;

@@ -3,9 +3,11 @@
 // others list.
 //
 // A triangle is drawn by weighted reservoir sampling (Efraimidis and Spirakis 2006): each has a key
-// from a random number of its own, and the greatest wins. A first run finds the greatest keys, a second
-// one, of the same program so that keys come out with the same bits, who has them.
+// from a random number of its own, and the greatest wins. Whoever has a greater one than all before is
+// listed with it, so that the one who wins in the end is found among few; who else is depends on the
+// order in which things run, but not who wins.
 #include "base/invocation.glsl"
+#include "radiance_cache/contender.glsl"
 #include "radiance_cache/volume.glsl"
 #include "radiance_cache/voxels.glsl"
 #include "scene/visibility_shared.h"
@@ -14,29 +16,22 @@ layout(local_size_x = 64) in;
 layout(binding = 0) uniform samplerBuffer triangles;  // as TracedTriangle
 layout(std430, binding = 0) buffer Voxels { uvec2 voxels[]; };  // area, greatest key
 layout(std430, binding = 1) buffer Large { uint large_count, large[]; };
-layout(std430, binding = 2) buffer Winners { uint winners[]; };  // by number of solid voxel
-layout(location = 0) uniform uint count;   // triangles, or large ones
-layout(location = 1) uniform bool winning;  // the second run
+layout(std430, binding = 2) buffer Contenders { uint contender_count, unused; Contender contenders[]; };
+layout(location = 0) uniform uint count;  // triangles, or large ones
+layout(location = 1) uniform uint room;   // in `contenders`
 
 const int MOST_COLUMNS = 64;  // of a triangle that one invocation takes
-const uint FULL = 0x80000000u;  // an area that no more is added to
 
 void visit(uint primitive, CacheVolume volume, ivec3 voxel, float area) {
   uint seed = voxel_seed(primitive, voxel, volume_index);
   // -log of a random number in (0, 1) is distributed exponentially.
-  float key = area / -log((float(seed >> 8) + 0.5) / 16777216.0);
-  uint key_bits = floatBitsToUint(key);
-  int word = word_of(volume, voxel), bit = voxel.x & 31;
-  uint index = uint(word * 32 + bit);
-  if (winning) {
-    uvec2 solid = texelFetch(volume_words, word).xy;
-    if ((solid.x >> bit & 1u) != 0u && voxels[index].y == key_bits)
-      atomicMin(winners[solid_number(solid, uint(bit))], primitive);
-  } else {
-    // Rounded by chance, or many tiny triangles would come to nothing.
-    uint steps = uint(area * AREA_STEPS + unit_float(hash(seed)));
-    if (steps > 0u && voxels[index].x < FULL) atomicAdd(voxels[index].x, steps);
-    atomicMax(voxels[index].y, key_bits);
+  uint key = floatBitsToUint(area / -log((float(seed >> 8) + 0.5) / 16777216.0));
+  uint index = uint(word_of(volume, voxel) * 32 + (voxel.x & 31));
+  // Rounded by chance, or many tiny triangles would come to nothing.
+  atomicAdd(voxels[index].x, uint(area * AREA_STEPS + unit_float(bitfieldReverse(seed))));
+  if (atomicMax(voxels[index].y, key) < key) {
+    uint place = atomicAdd(contender_count, 1u);
+    if (place < room) contenders[place] = Contender(index, key, primitive);
   }
 }
 

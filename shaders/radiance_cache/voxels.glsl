@@ -7,12 +7,13 @@ layout(location = 3) uniform int volume_index;
 // that a voxel draws the same random numbers wherever its volume moves.
 layout(location = 4) uniform ivec3 lattice[MOST_CASCADES];
 
-const float AREA_STEPS = 65536.0;  // that the area of a voxel's face is counted in
+// That the area of a voxel's face is counted in; words hold that of 2^18 faces.
+const float AREA_STEPS = 16384.0;
 
 // A number for drawing random ones for a triangle in a voxel.
 uint voxel_seed(uint primitive, ivec3 voxel, int volume) {
   uvec3 place = uvec3(voxel + lattice[volume]) * uvec3(0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du);
-  return hash(place.x ^ hash(place.y ^ hash(place.z ^ hash(primitive))));
+  return hash((place.x + place.y + place.z) ^ hash(primitive));
 }
 
 // A vector with component `axis` last, and back.
