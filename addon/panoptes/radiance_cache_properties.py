@@ -134,9 +134,9 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
         default=4, min=1, max=64, subtype='PIXEL')
     dilate: BoolProperty(
         name='Dilate',
-        description='Let the neighbours of these cells hold light, too, as in the dissertation. Takes two or three '
-                    'times as long, and changes little',
-        default=False)
+        description='Let the neighbours of these cells hold light, too, as in the dissertation. Without, cells take '
+                    'half the time, and surfaces whose own cell lies behind them are dark',
+        default=True)
     rsm_samples: IntProperty(
         name='Samples',
         description='Pixels of a shadow map for each lamp and cell. Noise falls with the square root of it',

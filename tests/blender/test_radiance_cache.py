@@ -51,7 +51,7 @@ class TestSettings:
         assert sent() == {
             'enabled': True, 'bounces': 2, 'resolution': 0, 'voxels': 4, 'cascades': 0, 'encoding': 'y3co1cg1',
             'luminance': 1.0, 'chrominance': 1.0, 'regions': [], 'first_bounce': 'surfaces', 'directions': 64,
-            'march_steps': 0, 'voxel_fill': 0.75, 'occupancy': 'auto', 'depth_stride': 4, 'dilate': False,
+            'march_steps': 0, 'voxel_fill': 0.75, 'occupancy': 'auto', 'depth_stride': 4, 'dilate': True,
             'rsm_samples': 200, 'rsm_resolution': 128, 'rsm_spread': pytest.approx(0.8), 'rsm_mixed': True,
             'blend': pytest.approx(0.8), 'picture': 'none'}
         assert final()['settings']['specular_rays'] == {'mode': 'auto', 'roughness': pytest.approx(0.3)}
@@ -60,7 +60,7 @@ class TestSettings:
         ('enabled', False), ('bounces', 0), ('bounces', 8), ('resolution', 24), ('voxels', 8), ('cascades', 3),
         ('encoding', 'Y3CO2CG2'), ('encoding', 'RGB2'), ('luminance', 0.5), ('chrominance', 0.0),
         ('first_bounce', 'RSM'), ('directions', 512), ('march_steps', 12), ('voxel_fill', 1.0),
-        ('occupancy', 'DEPTH'), ('depth_stride', 1), ('dilate', True), ('rsm_samples', 4096),
+        ('occupancy', 'DEPTH'), ('depth_stride', 1), ('dilate', False), ('rsm_samples', 4096),
         ('rsm_resolution', 1024), ('rsm_spread', 0.5), ('rsm_mixed', False), ('blend', 0.0)])
     def test_values(self, ours, name, value):
         before = sent()
@@ -229,9 +229,9 @@ class TestCommandLine:
     def test_values(self, scene, ours):
         boxes = bpy.data.collections.new('My Boxes')
         assign(scene, *((f'radiance_cache.{name}', value) for name, value in (
-            ('resolution', '24'), ('encoding', 'RGB2'), ('luminance', '0.5'), ('dilate', 'on'),
+            ('resolution', '24'), ('encoding', 'RGB2'), ('luminance', '0.5'), ('dilate', 'off'),
             ('region_collection', 'My Boxes'))), ('specular_rays.mode', 'ON'))
-        assert (ours.resolution, ours.encoding, ours.luminance, ours.dilate) == (24, 'RGB2', 0.5, True)
+        assert (ours.resolution, ours.encoding, ours.luminance, ours.dilate) == (24, 'RGB2', 0.5, False)
         assert ours.region_collection == boxes and scene.panoptes.specular_rays.mode == 'ON'
 
     def test_every_setting_has_a_name(self, scene, ours):

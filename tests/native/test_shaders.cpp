@@ -263,6 +263,7 @@ class Shaders : public ::testing::Test {
                                      .surfaces = surfaces(bits)},
                                     film));
     };
+    film.start(4, 4, {}, {});
     for (int encoding = 0; encoding < 6; ++encoding)
       for (bool split : {false, true}) {
         const radiance_cache::LookUpOptions cache{.encoding = radiance_cache::Encoding(encoding),
