@@ -83,7 +83,7 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
             ('RGB2', 'Red, Green and Blue Coarse', 'Twelve numbers (RGB2). The same, for comparison'),
         ),
         default='Y3CO1CG1')
-    luminance: _strength('Strength', 'Strength of indirect light')
+    luminance: _strength('Strength', 'Strength of light that comes from other surfaces; that of the world stays')
     chrominance: _strength('Colour', 'Strength of its colour: 0 is grey, more than 1 exaggerates it')
     region_collection: PointerProperty(
         type=bpy.types.Collection,
@@ -164,7 +164,7 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
 class PanoptesObjectSettings(bpy.types.PropertyGroup):
     """Options of an object that Blender has no place for."""
 
-    indirect_luminance: _strength('Strength', 'Strength of the indirect light that is seen on this object or in this '
-                                              'region, in Real-time', _tag)
+    indirect_luminance: _strength('Strength', 'Strength of light from other surfaces that is seen on this object or in '
+                                              'this region, in Real-time', _tag)
     indirect_chrominance: _strength('Colour', 'Strength of the colour of that light: 0 is grey, more than 1 '
                                               'exaggerates it', _tag)
