@@ -65,10 +65,13 @@ std::vector<glm::vec4> blurred_world(std::span<const glm::vec4> radiance, int di
   for (int v = 0; v < kHeight; ++v)
     for (int u = 0; u < kWidth; ++u) {
       const auto row = radiance.begin() + 2 * v * kWorldWidth + 2 * u, below = row + kWorldWidth;
-      const glm::dvec4 sum = glm::dvec4(row[0]) + glm::dvec4(row[1]) + glm::dvec4(below[0]) +
-                             glm::dvec4(below[1]);
-      texels.push_back({direction(u, v, kWidth, kHeight), 0.25 * glm::dvec3(sum),
-                        solid_angle(v, kWidth, kHeight)});
+      const double size = solid_angle(2 * v, kWorldWidth, kWorldHeight),
+                   size_below = solid_angle(2 * v + 1, kWorldWidth, kWorldHeight);
+      const glm::dvec4 sum = size * (glm::dvec4(row[0]) + glm::dvec4(row[1])) +
+                             size_below * (glm::dvec4(below[0]) + glm::dvec4(below[1]));
+      texels.push_back({direction(u, v, kWidth, kHeight),
+                        glm::dvec3(sum) / (2 * (size + size_below)),
+                        2 * (size + size_below)});
     }
   std::vector<glm::vec4> result;
   for (int y = 0; y < kBlurredHeight; ++y)

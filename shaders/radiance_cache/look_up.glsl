@@ -24,7 +24,7 @@ struct CacheLight {
 const float CACHE_OFFSET = 0.5;
 // Cells whose seeds lie this far before a surface, in cells, count in full; from there on down to 0
 // less and less, those behind it not at all. Where nothing else is near, they are better than nothing.
-const float CACHE_BEFORE = 0.125, CACHE_LEAST = 1.0e-3;
+const float CACHE_BEFORE = 0.125, CACHE_LEAST = 1.0e-6;
 
 // The first volume in which `position` lies at least a cell from the border; the last one if there is
 // none. `share`: 1, but if that does not hold all of the scene it falls to 0 over its last cell.
