@@ -170,6 +170,35 @@ def glow():
     cube("tube", box, 0.4, location=(2.8, 0.6, 1.6), rotation=(0.3, 0.2, 0.5))
 
 
+def shader(name, kind, **inputs):
+    """A material of one shader node; inputs by their names, with _ for spaces."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    node = tree.nodes.new(kind)
+    for key, value in inputs.items():
+        node.inputs[key.replace("_", " ")].default_value = value
+    tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    return material
+
+
+def mirrors():
+    """A mirror, a glass ball, a pane and a rough metal ball before lit walls; light bounces off no rough surface."""
+    for index, (color, place) in enumerate([((0.7, 0.65, 0.6), {}), ((0.2, 0.5, 0.8), {"location": (-4, 0, 3), "rotation": (0, math.pi / 2, 0)}),
+                                            ((0.8, 0.3, 0.2), {"location": (0, -5, 3), "rotation": (-math.pi / 2, 0, 0)})]):
+        rectangle(f"wall {index}", shader(f"wall {index}", "ShaderNodeBsdfDiffuse", Color=(*color, 1.0)), (12, 12), **place)
+    rectangle("mirror", shader("mirror", "ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.7, 1.0), Roughness=0.0), (7, 4),
+              location=(0.5, 3, 1.6), rotation=(math.pi / 2, 0, 0.2))
+    sphere("glass", shader("glass", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.45), 0.8, segments=96, location=(-1.2, 0, 0.9))
+    sphere("metal", shader("metal", "ShaderNodeBsdfGlossy", Color=(1.0, 0.8, 0.4, 1.0), Roughness=0.25), 0.8, segments=96,
+           location=(1.2, 0.3, 0.9))
+    cube("pane", shader("pane", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.2), location=(0.2, -1.6, 0.6), scale=(0.9, 0.1, 1.0))
+    camera((0.0, -4.5, 2.0), (0.0, 0.0, 0.9))
+    lamp("POINT", 600.0, (1.5, -2.5, 4.0), color=(1.0, 0.9, 0.8))
+    cycles = bpy.context.scene.cycles
+    cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces = 12, 0, 8, 12
+
+
 def alpha_card():
     """A card with round holes cut by a texture's alpha, and one of plain alpha .5, both casting shadows."""
     rectangle("floor", principled("floor", (0.7, 0.7, 0.7))[0], (12, 12))
@@ -305,7 +334,7 @@ def image_node(material, picture):
     return node
 
 
-NAMES = ("sun", "point", "spot", "area", "four_lamps", "soft_lamps", "glow", "alpha_card", "normal_map", "instances", "transforms",
+NAMES = ("sun", "point", "spot", "area", "four_lamps", "soft_lamps", "glow", "mirrors", "alpha_card", "normal_map", "instances", "transforms",
          "nan_vertices", "missing_texture", "no_camera", "empty", "orthographic")
 
 

@@ -20,7 +20,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 # Every pass that both engines have.
-PASSES = ("combined", "z", "normal", "diffuse_color", "diffuse_direct", "diffuse_indirect", "emit", "environment")
+PASSES = ("combined", "z", "normal", "diffuse_color", "diffuse_direct", "diffuse_indirect", "glossy_color", "glossy_direct", "glossy_indirect",
+          "transmission_color", "transmission_direct", "transmission_indirect", "emit", "environment")
 
 
 def lamps_alone():
