@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "gl/dispatch.h"
 #include "gpu_scene/units.h"
+#include "radiance_cache/voxels_shared.h"
 
 #include <fmt/format.h>
 
@@ -21,10 +22,8 @@ constexpr int kTriangleUnit = 0, kVoxelUnit = 1, kWordUnit = 2;
 constexpr GLbitfield kBarriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                                  GL_BUFFER_UPDATE_BARRIER_BIT;
 
-constexpr double kAreaSteps = 16384;  // AREA_STEPS of voxels.glsl
-
 // Bytes before the first of voxelize.comp's contenders, and of each.
-constexpr int64_t kContenders = 8, kContenderBytes = 12;
+constexpr int64_t kContenders = 8, kContenderBytes = sizeof(shared::Contender);
 
 // Textures are read as if a pixel was so wide, in voxels: many surfels together have the mean of an
 // image, and each has little of what lies beyond its voxel.
@@ -161,7 +160,7 @@ void GeometryVolume::voxelize(const Frame& frame) {
   bind(0, bits_);
   bind(1, count);
   glUniform1ui(0, word_count_);
-  glUniform1ui(1, uint32_t(std::ceil(std::clamp(double(fill_), 0.0, 1e4) * kAreaSteps)));
+  glUniform1ui(1, uint32_t(std::ceil(std::clamp(double(fill_), 0.0, 1e4) * shared::AREA_STEPS)));
   gl::dispatch(word_count_, kBarriers);
   count.read(0, 4, &candidates_);
 

@@ -70,9 +70,18 @@ gl::ProgramSource find_seeds_program() {
   return source;
 }
 
-gl::ProgramSource list_cells_program(bool dilate) {
+gl::ProgramSource mark_seen_program() {
+  gl::ProgramSource source = compute("cells that are seen", "radiance_cache/mark_seen.comp");
+  rasterize::GBufferOptions().add_defines(source);
+  source.defines.push_back(fmt::format("CACHE_BLOCK {}", kCellsBlock));
+  source.defines.push_back(fmt::format("DEPTH_UNIT {}", kCellsUnit));
+  return source;
+}
+
+gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate) {
   gl::ProgramSource source = compute("cells that hold light", "radiance_cache/list_cells.comp");
-  source.defines = {fmt::format("DILATE {}", int(dilate))};
+  const int by = occupancy == Occupancy::kAll ? 2 : occupancy == Occupancy::kDepth ? 1 : 0;
+  source.defines = {fmt::format("OCCUPANCY {}", by), fmt::format("DILATE {}", int(dilate))};
   add_volume(source);
   return source;
 }

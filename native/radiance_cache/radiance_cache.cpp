@@ -69,8 +69,21 @@ void RadianceCache::begin(const Frame& frame) {
   volume_.update(grids_, settings_.voxel_fill, frame.triangles, frame.gpu, frame.view_block,
                  programs_, timer_);
   write_block(list_block_, list_origin_);
-  list_cells();
-  march();
+  transmission_ = plan::runs(frame.plan, "transmission");
+  occupancy_ = settings_.occupancy;
+  if (occupancy_ == Occupancy::kAuto) {
+    // Surfaces that nobody sees are lit by cells as well if they are to send that light on, and what
+    // rays meet anyway.
+    const bool elsewhere = bounces_ > 1 || (world_light_ && bounces_ > 0) ||
+                           plan::runs(frame.plan, "specular_rays");
+    occupancy_ = elsewhere ? Occupancy::kGeometry : Occupancy::kDepth;
+  }
+  find_seeds();
+  active_ = 0;
+  if (occupancy_ != Occupancy::kDepth) {
+    list_cells();
+    march();
+  }
   const int64_t texels = int64_t(volume_.volumes().count.y) * cell_texels(settings_.encoding) *
                          (split_ ? 2 : 1);
   want(cells_, cells_texels_, GL_RGBA32F, texels * 16);
@@ -86,23 +99,49 @@ void RadianceCache::release() {
     *buffer = gl::Buffer();
 }
 
+void RadianceCache::find_seeds() {
+  gl::PassScope scope(timer_, "radiance_cache_cells");
+  const uint32_t cells = uint32_t(volume_.volumes().count.y);
+  want(seeds_, seeds_texels_, GL_R32UI, int64_t(cells) * 4);
+  programs_.get(find_seeds_program()).use();
+  bind_volume();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
+  gl::dispatch(cells, GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
 void RadianceCache::list_cells() {
   gl::PassScope scope(timer_, "radiance_cache_cells");
   const uint32_t cells = uint32_t(volume_.volumes().count.y);
   want(list_, int64_t(cells) * 4);
-  want(seeds_, seeds_texels_, GL_R32UI, int64_t(cells) * 4);
   gl::Buffer counter(4);
   counter.clear();
-  programs_.get(find_seeds_program()).use();
+  programs_.get(list_cells_program(occupancy_, settings_.dilate)).use();
   bind_volume();
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
-  gl::dispatch(cells, GL_TEXTURE_FETCH_BARRIER_BIT);
-  programs_.get(list_cells_program(settings_.dilate)).use();
   seeds_texels_.bind(0);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, counter.id());
   gl::dispatch(cells, GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   counter.read(0, 4, &active_);
+}
+
+void RadianceCache::see(const rasterize::GBuffer& g_buffer, const glm::dvec3& origin) {
+  if (!runs_ || occupancy_ != Occupancy::kDepth) return;
+  {
+    gl::PassScope scope(timer_, "radiance_cache_cells");
+    write_block(view_block_, origin);
+    programs_.get(mark_seen_program()).use();
+    glBindBufferBase(GL_UNIFORM_BUFFER, kCellsBlock, view_block_.id());
+    g_buffer.bind_surfaces();
+    g_buffer.depth().bind(kCellsUnit);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
+    const int side = settings_.depth_stride;
+    const glm::ivec2 squares((g_buffer.width() + side - 1) / side, (g_buffer.height() + side - 1) / side);
+    glUniform3i(0, squares.x, squares.y, side);
+    glUniform1ui(1, transmission_);
+    gl::dispatch(uint32_t(squares.x * squares.y), GL_TEXTURE_FETCH_BARRIER_BIT);
+  }
+  list_cells();
+  march();
 }
 
 void RadianceCache::bind_volume() const {

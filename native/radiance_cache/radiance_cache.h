@@ -18,6 +18,7 @@
 #include "radiance_cache/geometry_volume.h"
 #include "radiance_cache/settings.h"
 #include "radiance_cache/world_light.h"
+#include "rasterize/g_buffer.h"
 #include "scene/scene.h"
 #include "tracing/triangle_list.h"
 
@@ -75,6 +76,9 @@ class RadianceCache {
     const gl::Buffer& faces;
     std::function<void(int unit)> bind_maps;
   };
+  // Before, in sample 0 of the picture: what the camera sees there, about `origin`. Cells may be chosen
+  // by that.
+  void see(const rasterize::GBuffer& g_buffer, const glm::dvec3& origin);
   void begin_lamps();
   void add_lamps(const Lamps& lamps);
   // Makes the cells' light.
@@ -90,6 +94,7 @@ class RadianceCache {
   void show(const LookUpOptions& options, const glm::dvec3& origin, const film::Film& film);
 
  private:
+  void find_seeds();
   void list_cells();
   void march();
   void bounce(bool cache);
@@ -114,11 +119,14 @@ class RadianceCache {
   gl::Buffer list_, seeds_, met_, radiosity_, direct_, cells_;
   gl::Texture seeds_texels_, met_texels_, radiosity_texels_, cells_texels_;
   gl::Buffer list_block_, view_block_, scales_block_;  // CacheVolumes about the list's origin, and about the camera
+  Occupancy occupancy_ = Occupancy::kGeometry;  // never kAuto
+  bool transmission_ = false;
   uint32_t active_ = 0;
 };
 
 gl::ProgramSource find_seeds_program();
-gl::ProgramSource list_cells_program(bool dilate);
+gl::ProgramSource mark_seen_program();
+gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate);
 gl::ProgramSource march_program(int steps);
 struct GatherOptions {
   Encoding encoding = Encoding::kY3Co1Cg1;

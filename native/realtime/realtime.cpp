@@ -202,7 +202,10 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
-  if (cache_.runs() && index == 0) cache_.begin_lamps();
+  if (cache_.runs() && index == 0) {
+    cache_.see(g_buffer_, glm::dvec3(glm::vec3(view.world_origin)));
+    cache_.begin_lamps();
+  }
   if (specular_rays_.runs() && !shows_occlusion() && !shows_cache()) trace_specular(index, view, around, cancelled);
   if (lamps_)
     add_lamps(index, view, gpu, cancelled);
@@ -255,6 +258,7 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
   const rasterize::LightSet set = lamps_ ? place(0, view, gpu) : rasterize::LightSet{};
   store_lights(set);
   shadow_revision_ = -1;  // these maps are of another sample than the next
+  cache_.see(g_buffer_, glm::dvec3(glm::vec3(view.world_origin)));
   cache_.begin_lamps();
   if (!shadows_ || set.batches.empty()) choose_views(0, view, nullptr, gpu);
   for (const rasterize::LightBatch& batch : set.batches) {

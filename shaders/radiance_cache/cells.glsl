@@ -29,8 +29,9 @@ int cell_number(CacheVolume volume, ivec3 at) {
 }
 
 // A seed as a whole number above 0, at most 512; 0 means that the cell has none. Where cells are
-// listed, the rest of the word tells whether a solid voxel lies in the cell.
-const uint SEED_CODE = 1023u, CELL_OCCUPIED = 1024u;
+// listed, the rest of the word tells whether a solid voxel lies in the cell, and whether the camera sees
+// something that is lit by it.
+const uint SEED_CODE = 1023u, CELL_OCCUPIED = 1024u, CELL_SEEN = 2048u;
 uint seed_code(ivec3 voxel) { return 1u + uint(voxel.x + 8 * (voxel.y + 8 * voxel.z)); }
 
 // Among the cells around a point, those within closed things are not to count: where cells look out on

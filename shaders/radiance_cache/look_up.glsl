@@ -1,10 +1,9 @@
 // Light from the radiance cache at a point of a surface (thesis, section 5.3, "Irradiance
 // Reconstruction"). The volumes lie relative to the origin of the points.
-#include "radiance_cache/cells.glsl"
 #include "radiance_cache/encoding.glsl"
 #include "radiance_cache/parts.glsl"
+#include "radiance_cache/touched_cells.glsl"
 
-layout(std140, binding = CACHE_BLOCK) uniform CacheBlock { CacheVolumes cached; };
 // CELL_TEXELS texels for each part of a cell, cells by number.
 layout(binding = CACHE_UNIT) uniform samplerBuffer cells;
 
@@ -20,35 +19,17 @@ struct CacheLight {
   float clipped; // what was cut off below 0, relative to the light
 };
 
-// A point as far before a surface, in cells, sees what the surface sees and is nearer to cells before it.
-const float CACHE_OFFSET = 0.5;
 // Cells whose seeds lie this far before a surface, in cells, count in full; from there on down to 0
 // less and less, those behind it not at all. Where nothing else is near, they are better than nothing.
 const float CACHE_BEFORE = 0.125, CACHE_LEAST = 1.0e-6;
-
-// The first volume in which `position` lies at least a cell from the border; the last one if there is
-// none. `share`: 1, but if that does not hold all of the scene it falls to 0 over its last cell.
-int volume_of(vec3 position, out float share) {
-  for (int v = 0; v < cached.count.x; ++v) {
-    CacheVolume volume = cached.volumes[v];
-    vec3 at = (position - volume.low.xyz) / volume.low.w;
-    vec3 margin = min(at, vec3(volume.cells.xyz) - at);
-    float least = min(margin.x, min(margin.y, margin.z));
-    share = clamp(least, 0.0, 1.0);
-    if (least >= 1.0) return v;
-  }
-  if (cached.count.w != 0) share = 1.0;
-  return cached.count.x - 1;
-}
 
 // What arrives at `position` on the side of a surface that faces `normal`.
 CacheRadiance cache_radiance(vec3 position, vec3 normal) {
   CacheRadiance radiance;
   CacheVolume volume = cached.volumes[volume_of(position, radiance.share)];
   vec3 place = (position - volume.low.xyz) / volume.low.w;
-  vec3 at = clamp(place + normal * CACHE_OFFSET, vec3(0.5), vec3(volume.cells.xyz) - 0.5) - 0.5;
-  ivec3 corner = ivec3(at);
-  vec3 fraction = at - vec3(corner);
+  vec3 fraction;
+  ivec3 corner = lowest_cell(volume, place, normal, fraction);
   for (int k = 0; k < CACHE_PARTS * CELL_TEXELS; ++k) radiance.parts[k] = vec4(0.0);
   float weights = 0.0;
   for (int i = 0; i < 8; ++i) {

@@ -5,7 +5,6 @@
 #include "radiance_cache/voxels.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0) uniform samplerBuffer triangles;  // as TracedTriangle
 layout(binding = 1) uniform usamplerBuffer voxels;    // area, key
 layout(std430, binding = 0) readonly buffer Listed { uint listed[]; };
 layout(std430, binding = 1) readonly buffer Winners { uint winners[]; };
@@ -55,7 +54,8 @@ void main() {
                       row / rows);
   int texel = int(primitive) * 3;
   vec4 t0 = texelFetch(triangles, texel);
-  vec3 e1 = texelFetch(triangles, texel + 1).xyz - t0.xyz, e2 = texelFetch(triangles, texel + 2).xyz - t0.xyz;
+  vec3 e1 = texelFetch(triangles, texel + 1).xyz - t0.xyz;
+  vec3 e2 = texelFetch(triangles, texel + 2).xyz - t0.xyz;
   Placed t;
   place(volume, t0.xyz, t0.xyz + e1, t0.xyz + e2, t);
   ivec3 at = axis_last(voxel, t.axis);

@@ -7,13 +7,11 @@
 // listed with it, so that the one who wins in the end is found among few; who else is depends on the
 // order in which things run, but not who wins.
 #include "base/invocation.glsl"
-#include "radiance_cache/contender.glsl"
 #include "radiance_cache/volume.glsl"
 #include "radiance_cache/voxels.glsl"
 #include "scene/visibility_shared.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0) uniform samplerBuffer triangles;  // as TracedTriangle
 layout(std430, binding = 0) buffer Voxels { uvec2 voxels[]; };  // area, greatest key
 layout(std430, binding = 1) buffer Large { uint large_count, large[]; };
 layout(std430, binding = 2) buffer Contenders { uint contender_count, unused; Contender contenders[]; };
@@ -46,13 +44,11 @@ void main() {
   if (primitive >= count) return;
   int column = 0, stride = 1;
 #endif
-  int texel = int(primitive) * 3;
-  vec4 last = texelFetch(triangles, texel + 2);
-  if ((floatBitsToUint(last.w) & SEEN_BY_DIFFUSE) == 0u) return;
+  Corners corners = fetch_corners(primitive);
+  if ((corners.flags & SEEN_BY_DIFFUSE) == 0u) return;
   CacheVolume volume = cache.volumes[volume_index];
   Placed t;
-  if (!place(volume, texelFetch(triangles, texel).xyz, texelFetch(triangles, texel + 1).xyz, last.xyz, t))
-    return;
+  if (!place(volume, corners.p0, corners.p1, corners.p2, t)) return;
   int width = t.high.x - t.low.x + 1, columns = width * (t.high.y - t.low.y + 1);
 #if !LARGE
   if (columns > MOST_COLUMNS) {

@@ -1,14 +1,12 @@
 // What makes the geometry volume: its voxels by number, a word's 32 after another's, and triangles
 // among them.
-#include "tracing/rays_shared.h"
+#include "radiance_cache/voxels_shared.h"
+#include "tracing/triangles.glsl"
 
 layout(location = 3) uniform int volume_index;
 // Where voxel (0, 0, 0) of each volume lies on the lattice of all voxels of this size in the world, so
 // that a voxel draws the same random numbers wherever its volume moves.
 layout(location = 4) uniform ivec3 lattice[MOST_CASCADES];
-
-// That the area of a voxel's face is counted in; words hold that of 2^18 faces.
-const float AREA_STEPS = 16384.0;
 
 // A number for drawing random ones for a triangle in a voxel.
 uint voxel_seed(uint primitive, ivec3 voxel, int volume) {
@@ -16,9 +14,7 @@ uint voxel_seed(uint primitive, ivec3 voxel, int volume) {
   return hash((place.x + place.y + place.z) ^ hash(primitive));
 }
 
-// A vector with component `axis` last, and back.
-vec3 axis_last(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v.xyz; }
-vec3 axis_back(vec3 v, int axis) { return axis == 0 ? v.zxy : axis == 1 ? v.yzx : v.xyz; }
+// axis_last() of voxels, and back.
 ivec3 axis_last(ivec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v.xyz; }
 ivec3 axis_back(ivec3 v, int axis) { return axis == 0 ? v.zxy : axis == 1 ? v.yzx : v.xyz; }
 
@@ -104,8 +100,10 @@ float share_of(float z, float a, float b) { return clamp((z - a) / max(b - a, 1.
 // relative to the voxel's lowest one, as seen along the axis. Some fall together.
 void cut_to_layer(Placed t, ivec3 voxel, out vec2 corners[5]) {
   vec3 a = t.p0 - vec3(voxel), b = t.p1 - vec3(voxel), c = t.p2 - vec3(voxel);
-  vec2 bent0 = b.z > 0.0 ? mix(a.xy, b.xy, share_of(0.0, a.z, b.z)) : mix(b.xy, c.xy, share_of(0.0, b.z, c.z));
-  vec2 bent1 = b.z > 1.0 ? mix(a.xy, b.xy, share_of(1.0, a.z, b.z)) : mix(b.xy, c.xy, share_of(1.0, b.z, c.z));
+  vec2 bent0 = b.z > 0.0 ? mix(a.xy, b.xy, share_of(0.0, a.z, b.z))
+                         : mix(b.xy, c.xy, share_of(0.0, b.z, c.z));
+  vec2 bent1 = b.z > 1.0 ? mix(a.xy, b.xy, share_of(1.0, a.z, b.z))
+                         : mix(b.xy, c.xy, share_of(1.0, b.z, c.z));
   corners[0] = mix(a.xy, c.xy, share_of(0.0, a.z, c.z));
   corners[1] = mix(a.xy, c.xy, share_of(1.0, a.z, c.z));
   corners[2] = bent1;

@@ -283,7 +283,9 @@ class Shaders : public ::testing::Test {
     add(radiance_cache::bounce_program({}, true, false));
     add(radiance_cache::find_seeds_program());
     for (bool either : {false, true}) {
-      add(radiance_cache::list_cells_program(either));
+      for (auto occupancy : {radiance_cache::Occupancy::kGeometry, radiance_cache::Occupancy::kDepth,
+                             radiance_cache::Occupancy::kAll})
+        add(radiance_cache::list_cells_program(occupancy, either));
       add(radiance_cache::march_program(either ? 12 : 0));
       add(radiance_cache::light_surfels_program(either));
     }
@@ -317,6 +319,7 @@ class Shaders : public ::testing::Test {
       }
     add(ray_picture::camera_rays_program());
     add(tracing::flatten_program());
+    add(radiance_cache::mark_seen_program());
     for (gl::ProgramSource& source : radiance_cache::volume_programs()) add(std::move(source));
     for (int bits = 0; bits < 4; ++bits) {
       add(tracing::open_rays_program(bits & 1, bits & 2));

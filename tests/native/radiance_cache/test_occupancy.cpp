@@ -1,0 +1,89 @@
+// Which cells of the radiance cache hold light: fewer of them must not change the picture.
+#include "support.h"
+
+namespace panoptes::test {
+namespace {
+
+using film::Pass;
+using radiance_cache::Occupancy;
+
+// Two rooms of white walls, one above the other, a lamp in each; the camera is in the upper one.
+TestScene rooms() {
+  TestScene s;
+  const Id white = s.add_material(lambert(glm::vec3(0.8f))), red = s.add_material(lambert({0.8f, 0.1f, 0.1f}));
+  for (float z : {0.0f, 3.0f, 6.0f}) s.add_object(floor_at(z, 3), {white});
+  s.add_object(quad({-3, 0, 3}, {0, 3, 0}, {0, 0, 3}), {red});
+  s.add_object(quad({3, 0, 3}, {0, 3, 0}, {0, 0, 3}), {white});
+  s.add_object(quad({0, 3, 3}, {3, 0, 0}, {0, 0, 3}), {white});
+  s.lights = {point({1, 0, 5}, 100), point({-1, 0, 2}, 100)};
+  return s;
+}
+
+const gpu_scene::Camera kInside = perspective({0, -4, 4.5}, {0, 0, 4}, 0.9, 40, 30);
+
+Picture picture_by(Occupancy occupancy, int bounces, int stride, bool dilate = false) {
+  engine::RenderRequest r = request(kInside, {Pass::kDiffInd});
+  r.cache.resolution = 16;
+  r.cache.cascades = 1;
+  r.cache.bounces = bounces;
+  r.cache.occupancy = occupancy;
+  r.cache.depth_stride = stride;
+  r.cache.dilate = dilate;
+  return render(r);
+}
+
+class CacheOccupancy : public ::testing::Test {
+ protected:
+  CacheOccupancy() {
+    shared_engine().edit([](scene::Scene& scene) { rooms().install(scene); });
+  }
+};
+
+TEST_F(CacheOccupancy, CellsThatAreSeenAreAllThatOneBounceNeeds) {
+  const Picture all = picture_by(Occupancy::kAll, 1, 4), seen = picture_by(Occupancy::kDepth, 1, 1);
+  ASSERT_GT(mean(all[Pass::kDiffInd]), 0.01);
+  EXPECT_EQ(all[Pass::kDiffInd], seen[Pass::kDiffInd]);
+  EXPECT_LT(seen.stats.cache.cells, all.stats.cache.cells / 2);
+  EXPECT_GT(seen.stats.cache.cells, 20);
+  // It is what is chosen then.
+  EXPECT_EQ(picture_by(Occupancy::kAuto, 1, 1).stats.cache.cells, seen.stats.cache.cells);
+}
+
+TEST_F(CacheOccupancy, AWiderStrideMissesLittleAndNothingWithItsNeighbours) {
+  const Picture exact = picture_by(Occupancy::kDepth, 1, 1), wide = picture_by(Occupancy::kDepth, 1, 8),
+                dilated = picture_by(Occupancy::kDepth, 1, 8, true);
+  EXPECT_LE(wide.stats.cache.cells, exact.stats.cache.cells);
+  EXPECT_GT(dilated.stats.cache.cells, wide.stats.cache.cells);
+  EXPECT_LT(relative_rmse(wide[Pass::kDiffInd], exact[Pass::kDiffInd]), 0.1);
+  EXPECT_EQ(dilated[Pass::kDiffInd], exact[Pass::kDiffInd]);
+}
+
+TEST_F(CacheOccupancy, MoreBouncesAreLitByCellsThatNobodySees) {
+  const Picture chosen = picture_by(Occupancy::kAuto, 2, 1), geometry = picture_by(Occupancy::kGeometry, 2, 1);
+  EXPECT_EQ(chosen.stats.cache.cells, geometry.stats.cache.cells);
+  EXPECT_EQ(chosen[Pass::kDiffInd], geometry[Pass::kDiffInd]);
+  EXPECT_GT(geometry.stats.cache.cells, picture_by(Occupancy::kDepth, 2, 1).stats.cache.cells);
+}
+
+TEST_F(CacheOccupancy, DoesNotDependOnTheSampleThatIsRenderedFirst) {
+  engine::RenderRequest r = request(kInside, {Pass::kDiffInd}, 2);
+  r.cache.resolution = 16;
+  r.cache.bounces = 1;
+  r.cache.occupancy = Occupancy::kDepth;
+  const Picture both = render(r);
+  r.first_sample = 0;
+  r.last_sample = 1;
+  const Picture first = render(r);
+  r.first_sample = 1;
+  r.last_sample = 2;
+  const Picture second = render(r);
+  Worst worst;
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x)
+      worst.compare(0.5 * (first.value(Pass::kDiffInd, x, y) + second.value(Pass::kDiffInd, x, y)),
+                    both.value(Pass::kDiffInd, x, y), 1e-3, x, y);
+  EXPECT_WORST_BELOW(worst, 1e-4);
+}
+
+}  // namespace
+}  // namespace panoptes::test
