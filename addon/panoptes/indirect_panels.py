@@ -38,7 +38,6 @@ class PANOPTES_PT_indirect_light(_RealtimePanel, bpy.types.Panel):
         column.prop(settings, 'luminance')
         column.prop(settings, 'chrominance')
         column.prop(settings, 'region_collection')
-        column.prop(settings, 'blend')
 
 
 class _IndirectSubPanel(_RealtimePanel):
@@ -78,10 +77,6 @@ class PANOPTES_PT_indirect_gathering(_IndirectSubPanel, bpy.types.Panel):
         column.active = settings.enabled
         column.prop(settings, 'directions')
         column.prop(settings, 'march_steps')
-        column.prop(settings, 'first_bounce')
-        if settings.first_bounce == 'RSM':
-            for name in ('rsm_samples', 'rsm_resolution', 'rsm_spread', 'rsm_mixed'):
-                column.prop(settings, name)
 
 
 class PANOPTES_PT_specular_rays(_RealtimePanel, bpy.types.Panel):

@@ -187,8 +187,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
                                            request.filter_penumbrae, request.force_all_effects,
                                            request.passes, request.debug_picture, paths,
                                            {request.paths, request.camera.lens.radius > 0},
-                                           request.occlusion, request.cache, request.specular_rays,
-                                           request.viewport});
+                                           request.occlusion, request.cache, request.specular_rays});
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
@@ -202,6 +201,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
       traced_.update(scene, gpu_scene_, programs_, timer_);
     else
       traced_.release();
+    if (!traces) traced_.release_structure();
     if (paths) begin_paths(request, plan, scene);
     if (!debug && !paths) begin_realtime(request, plan, scene);
     warnings = scene.warnings();
@@ -261,7 +261,13 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   stats.width = request.camera.width;
   stats.height = request.camera.height;
   stats.samples = done;
-  if (!debug && !paths) realtime_.amend(plan);
+  if (!debug && !paths) {
+    realtime_.amend(plan);
+    if (plan::runs(plan, "cache_first_bounce") &&
+        request.cache.first_bounce == radiance_cache::FirstBounce::kRsm)
+      warnings.push_back("reflective shadow maps are not part of this version: lit points of surfaces "
+                         "take their place");
+  }
   stats.effects = report(plan, times);
   for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
   stats.build_ms = build_ms;

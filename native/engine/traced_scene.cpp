@@ -58,8 +58,12 @@ void TracedScene::note_rays(int64_t rays, double ms) {
 }
 
 void TracedScene::release() {
-  tracer_.reset();
+  release_structure();
   triangles_.reset();
+}
+
+void TracedScene::release_structure() {
+  tracer_.reset();
   built_ = false;
 }
 

@@ -34,8 +34,9 @@ class TracedScene {
   // What so many rays took, for later choices. The first after another structure was made do not
   // count, since they have compiled programs.
   void note_rays(int64_t rays, double ms);
-  // Frees both.
+  // Frees both, or the structure alone.
   void release();
+  void release_structure();
 
   bool built() const { return built_; }
   // Only after update() and build().

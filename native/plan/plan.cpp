@@ -28,7 +28,7 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     append(rasterize::decide(facts, {settings.samples, settings.soft_shadows,
                                       settings.filter_penumbrae}));
     append(realtime::decide(facts));
-    append(radiance_cache::decide(facts, {settings.cache, settings.viewport}));
+    append(radiance_cache::decide(facts, settings.cache));
     append(ambient_occlusion::decide(facts, {settings.occlusion, runs(all, "radiance_cache"),
                                              settings.passes[size_t(film::Pass::kAo)],
                                              settings.samples}));

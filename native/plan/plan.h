@@ -24,7 +24,6 @@ struct PlanSettings {
   ambient_occlusion::Settings occlusion;  // these three: of Real-time
   radiance_cache::Settings cache;
   specular_rays::Settings specular_rays;
-  bool viewport = false;                  // frames follow each other
 };
 
 Effects make_plan(const scene::Facts& facts, const PlanSettings& settings);

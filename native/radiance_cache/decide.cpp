@@ -12,8 +12,7 @@ plan::Effect effect(const char* name, bool runs, std::string reason, bool by_cho
 
 }  // namespace
 
-plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) {
-  const Settings& s = settings.cache;
+plan::Effects decide(const scene::Facts& facts, const Settings& s) {
   const bool surfaces = facts.triangles > 0;
   const bool lamps = facts.lamp_count() > 0 || facts.emission;
   const bool bounced = s.bounces > 0, light = facts.world || (lamps && bounced);
@@ -30,18 +29,12 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                            surfaces && (!s.enabled || (lamps && !bounced && !facts.world))));
   const char* idle = "there is no radiance cache";
   const bool first = runs && lamps && bounced;
-  const bool rsm = s.first_bounce == FirstBounce::kRsm;
-  const char* no_first = !runs ? idle : !lamps ? "no lamp shines" : "no bounces are allowed";
-  effects.push_back(effect("cache_first_bounce", first && !rsm,
-                           !first ? no_first
-                           : rsm  ? "reflective shadow maps take its place"
-                                  : "lamps light surfaces that others see",
-                           !first || rsm));
-  effects.push_back(effect("cache_rsm", first && rsm,
-                           !first ? no_first
-                           : rsm  ? "switched on in the settings"
-                                  : "marched rays find the light of the first bounce",
-                           !first || !rsm));
+  effects.push_back(effect("cache_first_bounce", first,
+                           first    ? "lamps light surfaces that others see"
+                           : !runs  ? idle
+                           : !lamps ? "no lamp shines"
+                                    : "no bounces are allowed",
+                           !first));
   const bool world = runs && facts.world;
   effects.push_back(effect("cache_world", world,
                            world   ? "the world shines in from where rays leave the scene"
@@ -56,13 +49,6 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                            : bounced ? "one bounce is all that is asked for"
                                      : "no bounces are allowed",
                            !bounces));
-  const bool blend = runs && settings.viewport && s.blend > 0;
-  effects.push_back(effect("cache_blend", blend,
-                           blend            ? "frames follow each other, and must not flicker"
-                           : !runs          ? idle
-                           : s.blend == 0   ? "switched off in the settings"
-                                            : "this frame stands alone",
-                           true));
   return effects;
 }
 

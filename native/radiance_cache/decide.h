@@ -6,12 +6,7 @@
 
 namespace panoptes::radiance_cache {
 
-struct DecideSettings {
-  Settings cache;
-  bool viewport = false;  // frames follow each other
-};
-
 // Whether light is gathered in a volume, from where, and how often it bounces.
-plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings);
+plan::Effects decide(const scene::Facts& facts, const Settings& settings);
 
 }  // namespace panoptes::radiance_cache

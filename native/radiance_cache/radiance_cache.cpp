@@ -14,6 +14,9 @@ namespace panoptes::radiance_cache {
 
 namespace {
 
+// Squares of pixels along the shorter side of a picture that tell which cells are seen, if it has so many.
+constexpr int kLeastSquares = 60;
+
 // A buffer of at least `bytes`, with room to spare so that it is not made anew each time.
 void want(gl::Buffer& buffer, int64_t bytes) {
   if (!buffer || buffer.bytes() < bytes) {
@@ -80,10 +83,6 @@ void RadianceCache::begin(const Frame& frame) {
   }
   find_seeds();
   active_ = 0;
-  if (occupancy_ != Occupancy::kDepth) {
-    list_cells();
-    march();
-  }
   const int64_t texels = int64_t(volume_.volumes().count.y) * cell_texels(settings_.encoding) *
                          (split_ ? 2 : 1);
   want(cells_, cells_texels_, GL_RGBA32F, texels * 16);
@@ -125,7 +124,7 @@ void RadianceCache::list_cells() {
 }
 
 void RadianceCache::see(const rasterize::GBuffer& g_buffer, const glm::dvec3& origin) {
-  if (!runs_ || occupancy_ != Occupancy::kDepth) return;
+  if (!runs_) return;
   {
     gl::PassScope scope(timer_, "radiance_cache_cells");
     write_block(view_block_, origin);
@@ -134,7 +133,9 @@ void RadianceCache::see(const rasterize::GBuffer& g_buffer, const glm::dvec3& or
     g_buffer.bind_surfaces();
     g_buffer.depth().bind(kCellsUnit);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
-    const int side = settings_.depth_stride;
+    // In a small picture a cell covers few pixels.
+    const int shorter = std::min(g_buffer.width(), g_buffer.height());
+    const int side = std::clamp(shorter / kLeastSquares, 1, settings_.depth_stride);
     const glm::ivec2 squares((g_buffer.width() + side - 1) / side, (g_buffer.height() + side - 1) / side);
     glUniform3i(0, squares.x, squares.y, side);
     glUniform1ui(1, transmission_);

@@ -34,13 +34,6 @@ int cell_number(CacheVolume volume, ivec3 at) {
 const uint SEED_CODE = 1023u, CELL_OCCUPIED = 1024u, CELL_SEEN = 2048u;
 uint seed_code(ivec3 voxel) { return 1u + uint(voxel.x + 8 * (voxel.y + 8 * voxel.z)); }
 
-// Among the cells around a point, those within closed things are not to count: where cells look out on
-// the backs of surfaces. `backs`: their share of what a cell sees. 16 steps of trust, above the seed.
-uint trust_code(float backs) { return uint(15.0 * (1.0 - smoothstep(0.2, 0.5, backs)) + 0.5) << 10; }
-
-// 1 with full trust; not 0, since there are rooms whose walls all look outwards.
-float trust_of(uint code) { return 0.01 + 0.99 * float(code >> 10) / 15.0; }
-
 // The voxel within its cell.
 ivec3 seed_voxel(uint code) { return ivec3((uvec3((code & SEED_CODE) - 1u) >> uvec3(0, 3, 6)) & 7u); }
 

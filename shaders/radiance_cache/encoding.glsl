@@ -57,6 +57,13 @@ vec3 decode(vec4 texels[CELL_TEXELS], float weights[9]) {
     }
   }
 #if !RGB
+#if CHROMINANCE_TERMS == 1
+  // One chrominance for all directions: of what little light there is from where it is dark, too. The
+  // thesis adds it to any luminance, which takes colour from a floor under a blue sky; here all
+  // directions have the mean's hue.
+  float mean = COEFFICIENT(texels, 0) * weights[0];
+  sum.yz *= mean > 0.0 ? max(sum.x, 0.0) / mean : 0.0;
+#endif
   sum = rgb_in_gamut(sum);
 #endif
   return sum;

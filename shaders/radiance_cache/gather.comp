@@ -31,11 +31,8 @@ void main() {
   float turn = cell_turn(cell.at + lattice[cell.volume].xyz, counts.z);
   vec3 world[9], bounced[9];
   for (int i = 0; i < 9; ++i) world[i] = bounced[i] = vec3(0.0);
-  float met_any = 0.0, met_back = 0.0;
   for (uint k = 0u; k < counts.y; ++k) {
     uint hit = texelFetch(met, int(slot * counts.y + k)).x;
-    met_any += hit != RAY_MISS ? 1.0 : 0.0;
-    met_back += hit != RAY_MISS && (hit & 1u) != 0u ? 1.0 : 0.0;
     vec3 direction = cache_direction(k, counts.y, turn);
     float basis[9] = spherical_harmonics(direction);
     vec3 arriving = vec3(0.0);
@@ -53,8 +50,7 @@ void main() {
     for (int i = 0; i < 9; ++i) world[i] += arriving * basis[i];
   }
   float share = 4.0 * CACHE_PI / float(counts.y);
-  uint code = texelFetch(seeds, int(number)).x & SEED_CODE;
-  float seed = float(code | trust_code(met_back / max(met_any, 1.0)));
+  float seed = float(texelFetch(seeds, int(number)).x & SEED_CODE);
   for (int i = 0; i < 9; ++i) {
     world[i] *= share;
     bounced[i] *= share;

@@ -1,5 +1,6 @@
-// Lists the cells that hold light: those that have an empty voxel, and by OCCUPANCY 0: a solid one, 1:
-// something of what the camera sees to light; or 2: all of them. With DILATE their neighbours, too.
+// Lists the cells that hold light: those that have an empty voxel, and by OCCUPANCY 0: a solid one, with
+// DILATE in a neighbour, too; or 2: all of them. In any case those that what the camera sees is lit by;
+// with OCCUPANCY 1 only these, and with DILATE their neighbours.
 #include "base/invocation.glsl"
 #include "radiance_cache/cells.glsl"
 #include "radiance_cache/volume.glsl"
@@ -23,7 +24,7 @@ void main() {
   uint number = invocation();
   if (number >= uint(cache.count.y)) return;
   uint seed = texelFetch(seeds, int(number)).x;
-  bool occupied = occupied_by(seed);
+  bool occupied = occupied_by(seed) || (seed & CELL_SEEN) != 0u;
 #if DILATE
   Cell cell = cell_of(cache, number);
   CacheVolume volume = cache.volumes[cell.volume];

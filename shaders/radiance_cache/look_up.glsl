@@ -41,7 +41,7 @@ CacheRadiance cache_radiance(vec3 position, vec3 normal) {
     uint seed = uint(last[COEFFICIENTS % 4]);
     float before = dot(vec3(cell) + seed_place(seed, volume.cells.w) - place, normal);
     float weight = parts.x * parts.y * parts.z * clamp(before / CACHE_BEFORE, CACHE_LEAST, 1.0);
-    weight *= seed == 0u ? 0.0 : trust_of(seed);
+    weight = seed == 0u ? 0.0 : weight;
     weights += weight;
     for (int k = 0; k < CACHE_PARTS * CELL_TEXELS; ++k)
       radiance.parts[k] += weight * (k == CELL_TEXELS - 1 ? last : texelFetch(cells, first + k));

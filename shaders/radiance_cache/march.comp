@@ -12,10 +12,9 @@ layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];  // xyz: of each volu
 
 layout(binding = 0) uniform usamplerBuffer seeds;
 
-// Rays begin anywhere in the cell that its seed sees, if so many tries find such a place: light on the
-// two sides of a wall is not mixed. Where they do not, the seed lies in a corner of its own, and rays
-// begin in whichever empty voxel was found last.
-const int TRIES = 4;
+// Rays begin anywhere in the cell that its seed sees, if so many tries find such a place; else in the
+// seed's own voxel. So light on the two sides of a wall is not mixed.
+const int TRIES = 8;
 
 // Whether no solid voxel lies between two points, in voxels of the volume, at most a cell apart.
 bool sees(CacheVolume volume, vec3 from, vec3 to) {
@@ -41,18 +40,15 @@ void main() {
   uint random = hash(k + hash(floatBitsToUint(turn)));
   int side = volume.cells.w;
   vec3 seed = vec3(cell.at * side) + vec3(seed_voxel(texelFetch(seeds, int(active_cells[slot])).x & SEED_CODE)) + 0.5;
-  vec3 start = seed;
   bool seen = false;
-  for (int i = 0; i < TRIES && !seen; ++i) {
-    vec3 u;
+  vec3 start = seed, u;
+  for (int i = 0; i <= TRIES && !seen; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       random = hash(random);
       u[axis] = unit_float(random);
     }
-    vec3 place = (vec3(cell.at) + u) * float(side);
-    if (voxel_is_solid(volume, ivec3(place))) continue;
-    start = place;
-    seen = sees(volume, seed, place);
+    start = i < TRIES ? (vec3(cell.at) + u) * float(side) : seed + u - 0.5;
+    seen = sees(volume, seed, start);
   }
   March m = march(volume.low.xyz + start * voxel_size(volume), direction, cell.volume,
                   unit_float(hash(random)));

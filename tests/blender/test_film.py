@@ -52,6 +52,7 @@ def build(scene, shine):
     world((0.0, 0.0, 0.0))
     scene.camera.data.lens = 60.0
     scene.panoptes.samples = SAMPLES
+    scene.panoptes.bounces = 0
     return scene
 
 

@@ -341,6 +341,7 @@ class TestForReal:
             assert np.abs(ours - rays).mean() < 0.25 and np.corrcoef(ours.ravel(), rays.ravel())[0, 1] > 0.85
 
     def test_world_is_darkened(self, yard, tmp_path):
+        yard.panoptes.radiance_cache.enabled = False
         dark = render_combined(yard, tmp_path)
         yard.panoptes.ambient_occlusion.strength = 0.0
         bright = render_combined(yard, tmp_path)

@@ -160,10 +160,10 @@ class TestPasses:
     def test_real_time_leaves_them_black_and_says_so(self, scene, recorder, tmp_path):
         passes.enable_all(scene.view_layers[0], 'primitive')
         found = render_passes(scene, tmp_path)
-        assert not found['DiffInd'].any() and found['DiffDir'].all()
-        assert 'DiffInd' not in recorder.arguments('render')[0][0]['passes']
+        assert not found['Position'].any() and found['DiffInd'].all()
+        assert 'Position' not in recorder.arguments('render')[0][0]['passes']
         (said,) = session.last_stats['warnings']
-        assert 'DiffInd, ' in said and 'DiffDir' not in said
+        assert 'Position, ' in said and 'DiffInd' not in said
 
     def test_what_is_not_asked_for_is_not_there(self, primitive, recorder, tmp_path):
         primitive.view_layers[0].use_pass_position = True

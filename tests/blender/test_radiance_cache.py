@@ -189,9 +189,9 @@ class TestPanels:
     def test_real_time(self, ours):
         drawn = sum((draw(panel) for panel in self.RENDER), [])
         assert len(drawn) == len(set(drawn))
-        assert set(drawn) == {name for name in names(ours) if not name.startswith('rsm_')} - {'enabled'}
-        ours.first_bounce = 'RSM'
-        assert {name for name in names(ours) if name.startswith('rsm_')} <= set(draw(self.RENDER[2]))
+        # Reflective shadow maps and blending are not part of this version.
+        shown = {name for name in names(ours) if not name.startswith('rsm_')} - {'enabled', 'first_bounce', 'blend'}
+        assert set(drawn) == shown
         ours.occupancy = 'ALL'
         assert not {'depth_stride', 'dilate'} & set(draw(self.RENDER[1]))
 
@@ -304,9 +304,9 @@ class TestForReal:
             return {effect['name']: effect for effect in self.run(request)['effects']}
         session.final_sync.sync(session.mirror(), bpy.context.evaluated_depsgraph_get(), incremental=False)
         assert effects(final())['radiance_cache']['runs']
-        assert not effects(final())['cache_blend']['runs'] and effects(viewport())['cache_blend']['runs']
+        assert effects(viewport())['radiance_cache']['runs']
         yard.panoptes.radiance_cache.first_bounce = 'RSM'
-        assert effects(final())['cache_rsm']['runs']
+        assert any('reflective shadow maps' in warning for warning in self.run(final())['warnings'])
         yard.panoptes.radiance_cache.enabled = False
         assert effects(final())['radiance_cache']['reason'] == 'switched off in the settings'
 

@@ -261,7 +261,7 @@ class TestInstances:
 
         add_object(quad('Ground'), 'Ground').modifiers.new('Nodes', 'NODES').node_group = node_group(build)
         sync.run()
-        ids, matrices, offsets, table, _ = instances(sync)
+        ids, matrices, offsets, table, *_ = instances(sync)
         assert list(meshes(sync)) == ['Leaf'] and len(ids) == 6
         assert len({tuple(m[:3, 3]) for m in matrices[1:]}) == 5
         assert all(table[offset] > 0 for offset in offsets)
@@ -293,7 +293,7 @@ class TestInstances:
 
         add_object(quad('Ground'), 'Ground').modifiers.new('Nodes', 'NODES').node_group = node_group(build)
         sync.run()
-        ids, _, offsets, table, _ = instances(sync)
+        ids, _, offsets, table, *_ = instances(sync)
         assert sorted(np.unique(ids, return_counts=True)[1]) == [1, 7]
         slots = {a[0]: a[5].max() for a in sync.recorder.arguments('set_mesh')}
         assert len(slots) == 2

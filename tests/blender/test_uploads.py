@@ -293,5 +293,7 @@ class TestIndirectLight:
     def test_strength_on_an_object(self, lit):
         def edit():
             bpy.data.objects['Tile 6'].panoptes.indirect_luminance = 0.5
-        # Neither does it have to be gathered anew, nor do lamps see anything of it.
-        assert lit.of(edit) == (4, 0)
+        # Neither does it have to be gathered anew, nor do lamps see anything of it: two halves, and the block of all
+        # scales, which the programs of a scene without any know nothing of.
+        assert lit.of(edit)[0] == 4 + 672
+        assert lit.of(lambda: None) == (672, 0)

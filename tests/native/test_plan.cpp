@@ -155,14 +155,6 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
          s.occlusion.strength = 0;
        },
        {"world_light", "world_background", "radiance_cache", "cache_world", "cache_bounces"}},
-      {"reflective shadow maps in the viewport",
-       [](auto& f, auto& s) {
-         f.lamps[0] = 1;
-         s.cache.enabled = s.viewport = true;
-         s.cache.first_bounce = radiance_cache::FirstBounce::kRsm;
-         s.occlusion.strength = 0;
-       },
-       {"direct_light", "radiance_cache", "cache_rsm", "cache_bounces", "cache_blend"}},
       {"a cache that nothing shines into", [](auto&, auto& s) { s.cache.enabled = true; }, {}},
       {"passes with a divisor",
        [](auto&, auto& s) {
@@ -209,7 +201,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 15u + 4u + 6u + 7u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 15u + 4u + 6u + 5u + size_t(film::kPassCount));
   }
 }
 
