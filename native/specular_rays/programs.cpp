@@ -47,6 +47,7 @@ gl::ProgramSource go_on_program(const ProgramOptions& options) {
   gl::ProgramSource source = program("turns of specular paths", "go_on");
   options.surfaces.add_defines(source);
   define(source, "COLORED_ALPHA", options.colored_alpha);
+  define(source, "LAMPS", options.lamps);
   return source;
 }
 

@@ -13,6 +13,7 @@ namespace panoptes::specular_rays {
 struct ProgramOptions {
   rasterize::GBufferOptions surfaces;
   bool colored_alpha = false;  // surfaces may let coloured light pass straight on
+  bool lamps = false;          // that rays do not meet
 };
 
 gl::ProgramSource select_program(const ProgramOptions& options);

@@ -46,7 +46,8 @@ void SpecularRays::begin(const gpu_scene::Camera& camera, const plan::Effects& p
   rays_ = 0;
   paths_ = ended_ = 0;
   runs_ = plan::runs(plan, "specular_rays");
-  options_ = {rasterize::GBufferOptions::of(plan), plan::runs(plan, "alpha")};
+  options_ = {rasterize::GBufferOptions::of(plan), plan::runs(plan, "alpha"),
+              plan::runs(plan, "direct_light")};
   if (!runs_) {
     held_ = Held();
     return;

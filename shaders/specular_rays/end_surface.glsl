@@ -1,4 +1,4 @@
-// The surfaces where paths end, which are lit: without the lobes that other paths follow.
+// The surfaces where paths end, which are lit.
 #include "base/bsdf.glsl"
 #include "specular_rays/path.glsl"
 #include "tracing/surface_record.glsl"
@@ -31,11 +31,10 @@ void remove_lobes(inout Lobes l, uint which) {
 #endif
 }
 
-EndSurface fetch_end(uint i, Path path) {
+EndSurface fetch_end(uint i) {
   EndSurface end;
   end.position = uintBitsToFloat(texelFetch(records, int(i) * SURFACE_TEXELS).xyz);
   end.bulge = uintBitsToFloat(texelFetch(records, int(i) * SURFACE_TEXELS + 1).y);
   end.lobes = fetch_lobes(i, -fetch_direction(i));
-  remove_lobes(end.lobes, path.lobes);
   return end;
 }

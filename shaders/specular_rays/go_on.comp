@@ -22,6 +22,9 @@ layout(location = 1) uniform uint events;  // that paths have been through
 // A path ends where less of the light than this goes on as in a mirror: sheen on varnish, seen in
 // another mirror, is worth no noise.
 const float LEAST_SHARE = 0.2;
+// How often at least a path ends on a surface that is not quite smooth: only there do lamps light it,
+// which no ray meets.
+const float HIGHLIGHT_CHANCE = 0.5;
 
 // FOLLOWS bits of the lobes that are smooth enough.
 uint smooth_lobes(Lobes l) {
@@ -38,6 +41,20 @@ uint smooth_lobes(Lobes l) {
 #endif
   return which;
 }
+
+#if LAMPS
+// Whether a point of light is seen by some of the lobes of FOLLOWS bits.
+bool has_highlights(Lobes l, uint which) {
+  bool found = false;
+#if GLOSSY
+  found = (which & FOLLOWS_SPECULAR) != 0u && l.chances.specular > 0.0 && !is_smooth(l.alpha);
+#if LAYERS
+  found = found || ((which & FOLLOWS_COAT) != 0u && l.chances.coat > 0.0 && !is_smooth(l.coat_alpha));
+#endif
+#endif
+  return found;
+}
+#endif
 
 float share_of(LobeChances chances, uint which) {
   return ((which & FOLLOWS_SPECULAR) != 0u ? chances.specular : 0.0) +
@@ -96,14 +113,19 @@ void main() {
       end_path(index, path);
       return;
     }
-    // Either goes on by the smooth lobes or ends, to be lit by way of the others.
-    if (chance.y >= share) {
-      path.throughput /= 1.0 - share;
+    // Either goes on by the smooth lobes or ends, to be lit by way of the others, and by lamps by way
+    // of all.
+    float ends = 1.0 - share;
+#if LAMPS
+    if (has_highlights(lobes, followed)) ends = max(ends, HIGHLIGHT_CHANCE);
+#endif
+    if (chance.y < ends) {
+      path.throughput /= ends;
       path.lobes |= followed;
       end_path(index, path);
       return;
     }
-    path.throughput /= share;
+    path.throughput /= 1.0 - ends;
   }
 
   BsdfSample next = bsdf_sample(only(lobes, followed),

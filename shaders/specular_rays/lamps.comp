@@ -13,7 +13,10 @@ void main() {
   if (i >= count) return;
   uint index = ended[i];
   Path path = fetch_path(index);
-  EndSurface end = fetch_end(index, path);
+  EndSurface end = fetch_end(index);
+  // Glowing surfaces are met by the paths that follow the others.
+  Lobes unfollowed = end.lobes;
+  remove_lobes(unfollowed, path.lobes);
   float random = unit_float(hash(path_key(path.pixel) + hash(frame.sampling.x)));
   Receiver receiver = Receiver(end.position - frame.camera.xyz, end.lobes.geometric_normal,
                                end.lobes.smooth_normal, end.bulge, random);
@@ -22,6 +25,7 @@ void main() {
     vec3 to_light;
     vec3 irradiance = lamp_light(k, receiver, to_light);
     BsdfValue value = bsdf_evaluate(end.lobes, to_light);
+    if (lights[k].type == LIGHT_MESH) value = bsdf_evaluate(unfollowed, to_light);
     light += irradiance * (value.diffuse + value.glossy);
   }
   add_indirect(path, light);

@@ -16,8 +16,9 @@ void main() {
   if (i >= count) return;
   uint index = ended[i];
   Path path = fetch_path(index);
-  EndSurface end = fetch_end(index, path);
+  EndSurface end = fetch_end(index);
   Lobes l = end.lobes;
+  remove_lobes(l, path.lobes);
   vec3 position = end.position - frame.camera.xyz;
   Around here = look_around(position, l.geometric_normal);
   vec3 over = all_of(ambient_diffuse(here, l.normal));

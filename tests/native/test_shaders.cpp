@@ -198,7 +198,7 @@ class Shaders : public ::testing::Test {
   static void add_specular_rays() {
     add(specular_rays::begin_program());
     for (int bits = 0; bits < 32; ++bits) {
-      const specular_rays::ProgramOptions options{surfaces(bits), bool(bits & 16)};
+      const specular_rays::ProgramOptions options{surfaces(bits), bool(bits & 16), bool(bits & 16)};
       add(specular_rays::select_program(options));
       add(specular_rays::go_on_program(options));
       for (bool world : {false, true}) add(specular_rays::surroundings_program(options, {world, {}}));

@@ -126,16 +126,16 @@ TestScene cabinet(const std::vector<scene::Material>& materials) {
   return s;
 }
 
-// Light of a pass with the colour that was divided out of it, as means of blocks of 6 x 6 pixels.
+// Light of a pass with the colour that was divided out of it, as means of blocks of 12 x 12 pixels.
 std::vector<float> blocks(const Picture& picture, Pass pass) {
   const Pass divisor = film::info(pass).divisor;
-  const int across = picture.width / 6, down = picture.height / 6;
+  const int across = picture.width / 12, down = picture.height / 12;
   std::vector<float> means(size_t(across * down) * 3);
-  for (int y = 0; y < down * 6; ++y)
-    for (int x = 0; x < across * 6; ++x) {
+  for (int y = 0; y < down * 12; ++y)
+    for (int x = 0; x < across * 12; ++x) {
       glm::dvec3 light = picture.rgb(pass, x, y);
       if (divisor != pass) light *= picture.rgb(divisor, x, y);
-      for (int c = 0; c < 3; ++c) means[size_t(y / 6 * across + x / 6) * 3 + size_t(c)] += float(light[c]) / 36;
+      for (int c = 0; c < 3; ++c) means[size_t(y / 12 * across + x / 12) * 3 + size_t(c)] += float(light[c]) / 144;
     }
   return means;
 }
