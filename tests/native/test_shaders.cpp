@@ -271,9 +271,12 @@ class Shaders : public ::testing::Test {
                                                   .scaled = split && encoding % 2 == 0,
                                                   .unit = 16,
                                                   .block = 2};
-        for (int picture = 1; picture < 6; ++picture)
+        // Encodings only meet in how cells are read: one program of each kind stands for the others.
+        for (int picture = 1; picture < 6 && encoding % 3 == 0 && !split; ++picture)
           add(radiance_cache::picture_program(radiance_cache::Picture(picture), cache, film));
-        for (int bits : {0, 15, 80, 127}) with_film(film::PassSet().set(), true, bits, split, split, cache);
+        for (int bits : {15, 80})
+          if (bits == 15 || encoding % 3 == 0)
+            with_film(film::PassSet().set(), true, bits, split, split, cache);
         add(radiance_cache::bounce_program(cache, split, true));
         add(specular_rays::surroundings_program({surfaces(15), false}, {split, cache}));
         for (bool world : {false, true})
