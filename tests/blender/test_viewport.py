@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 
@@ -57,7 +58,9 @@ def test_added_object_appears(shown):
 def test_paths_end_with_what_real_time_began(shown):
     # Light of the world on an open plane is the same by both, and by so many samples hardly noisy on the mean.
     *color, _, _, status = shown['paths']
-    assert color == pytest.approx(shown['no debug'][:3], rel=0.02, abs=1e-3) and status == 'Paths: 4 samples'
+    # How many samples it took to look depends on how busy the machine is.
+    assert color == pytest.approx(shown['no debug'][:3], rel=0.02, abs=1e-3)
+    assert re.fullmatch(r'Paths: \d+ samples', status)
     assert shown['no paths'][:3] == pytest.approx(shown['no debug'][:3], abs=1e-3)
 
 
