@@ -32,10 +32,6 @@ void want(gl::Buffer& buffer, gl::Texture& texels, GLenum format, int64_t bytes)
   texels = gl::Texture(format, buffer);
 }
 
-}  // namespace
-
-namespace {
-
 // Whether bounced light is anywhere multiplied by something else than 1.
 bool scales(const RadianceCache::Frame& frame) {
   const Settings& s = frame.settings;
@@ -63,7 +59,8 @@ void RadianceCache::begin(const Frame& frame) {
   scaled_ = bounces_ > 0 && scales(frame);
   split_ = world_light_ && bounces_ > 0 &&
            (scaled_ || plan::runs(frame.plan, "pass_diffdir") || plan::runs(frame.plan, "pass_diffind") ||
-            plan::runs(frame.plan, "pass_glossdir") || plan::runs(frame.plan, "pass_glossind"));
+            plan::runs(frame.plan, "pass_glossdir") || plan::runs(frame.plan, "pass_glossind") ||
+            plan::runs(frame.plan, "pass_transdir") || plan::runs(frame.plan, "pass_transind"));
   list_origin_ = frame.triangles.origin();
   grids_ = choose_grids(frame.scene.bounds(), frame.camera, settings_);
   const glm::dvec3 high = grids_.back().low + grids_.back().cell * glm::dvec3(grids_.back().cells);
@@ -208,7 +205,7 @@ void RadianceCache::gather() {
     if (!cache && !lamps_) break;
     bounce(cache);
     gather_rays(true);
-    }
+  }
 }
 
 void RadianceCache::bounce(bool cache) {

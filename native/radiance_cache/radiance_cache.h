@@ -66,8 +66,8 @@ class RadianceCache {
     return runs_ ? Occupied{active_, volume_.volumes().count.y} : Occupied{};
   }
 
-  // Lamps light the surfels batch by batch: light() once before them all, then for each batch
-  // `lamps` binds it to the program that it is called with. Positions of lamps are relative to `origin`.
+  // Lamps light the surfels batch by batch: begin_lamps() once before them all, then add_lamps() for
+  // each while its maps are there. Positions of lamps are relative to `origin`.
   struct Lamps {
     glm::dvec3 origin;
     bool shadows = false;
