@@ -23,7 +23,7 @@ def render(engine, depsgraph):
             warnings.append(sentence)
 
     layer = depsgraph.view_layer
-    request = requests.final(depsgraph, (), warn)
+    request = requests.final(depsgraph, (), warn, part=session.keep_pieces)
     asked = passes.enabled(layer)
     if depsgraph.scene.panoptes.debug_picture == 'none':
         _warn_of_black(asked, request['method'], warn)

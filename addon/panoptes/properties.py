@@ -25,7 +25,8 @@ class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
         name='Penumbrae',
         description='How soft shadows are made',
         items=(
-            ('AUTO', 'Automatic', 'Filtered in the 3D View, sampled in final renders'),
+            ('AUTO', 'Automatic', 'Filtered in the 3D View and in final renders of fewer than 8 samples, '
+                                  'sampled in others'),
             ('SAMPLED', 'Sampled', 'Each sample sees another point of the lamp: exact with many '
                                    'samples, and shadow maps are drawn anew for each'),
             ('FILTERED', 'Filtered', 'Shadows widen with the distance of what casts them: smooth and '

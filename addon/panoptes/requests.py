@@ -7,6 +7,8 @@ from . import cameras, debug_pictures, lens, occlusion, radiance_cache, specular
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
+# Fewer points of a lamp are seen apart in its shadows.
+_LAMP_POINTS = 8
 # Of the native engine.
 _WIDEST_FILTER = 10.0
 
@@ -179,10 +181,11 @@ def preview(depsgraph):
     return request
 
 
-def final(depsgraph, passes, warn):
+def final(depsgraph, passes, warn, part=False):
     """Return the request of a final render of a dependency graph's scene.
 
-    Its size is that of the render region, where one is set.
+    Its size is that of the render region, where one is set. `part` says that its samples are put
+    together with others'.
     """
     scene, camera = depsgraph.scene, _active_camera(depsgraph)
     render = scene.render
@@ -196,8 +199,13 @@ def final(depsgraph, passes, warn):
     view, projection = cameras.matrices(depsgraph, camera, width, height)
     settings = scene.panoptes
     samples = (settings.first_sample, settings.first_sample + settings.samples)
-    return build(depsgraph, (region[2] - region[0], region[3] - region[1]), samples, view,
-                 _cropped(projection, region, width, height), passes, warn, camera)
+    request = build(depsgraph, (region[2] - region[0], region[3] - region[1]), samples, view,
+                    _cropped(projection, region, width, height), passes, warn, camera)
+    # Samples of a part must look as they do in the whole, of which nothing is known.
+    few = samples[0] == 0 and samples[1] < _LAMP_POINTS and not part
+    if settings.realtime.penumbrae == 'AUTO' and few:
+        request['settings']['filter_penumbrae'] = True
+    return request
 
 
 def _looked_through(depsgraph, space, region_data):

@@ -28,23 +28,28 @@ plan::Effects decide(const scene::Facts& facts, const DecideSettings& settings) 
                            : ambient       ? "its strength is 0"
                                            : "no light comes from all around, and no AO pass is asked for",
                            surfaces && ambient && !runs));
+  const char* near = "rays of the radiance cache meet what stands farther away, and the camera sees what is near";
   const char* idle = "no ambient occlusion is looked for";
   const bool maps = facts.shadow_lamp_count() > 0;
-  const bool lamps = runs && maps && s.secondary_views > 0;
+  const bool contact = settings.cached_light && !settings.pass && !picture;
+  const bool lamps = runs && maps && s.secondary_views > 0 && !contact;
   effects.push_back(effect("occlusion_lamp_views", lamps,
                            lamps    ? "shadow maps show what the camera does not see"
                            : !runs  ? idle
                            : !maps  ? "nothing casts shadows that could be looked at"
-                                    : "no secondary views are allowed",
-                           s.secondary_views == 0));
+                           : s.secondary_views == 0 ? "no secondary views are allowed"
+                                                    : near,
+                           s.secondary_views == 0 || contact));
   const bool chosen = s.phantom_camera_count > 0, off = s.phantoms == Phantoms::kOff && !chosen;
-  effects.push_back(effect("occlusion_phantom_views", runs && !off,
+  const bool unneeded = contact && !chosen && s.phantoms == Phantoms::kAuto;
+  effects.push_back(effect("occlusion_phantom_views", runs && !off && !unneeded,
                            !runs                            ? idle
                            : chosen                         ? "phantom cameras were chosen"
                            : off                            ? "switched off in the settings"
                            : s.phantoms == Phantoms::kOn    ? "switched on in the settings"
+                           : unneeded                       ? near
                                                             : "used where other views cover too little",
-                           off));
+                           off || unneeded));
   const bool bent = runs && (light || s.picture == Picture::kBentNormals);
   effects.push_back(effect("bent_normals", bent,
                            bent    ? "light from all around comes from where it is open"

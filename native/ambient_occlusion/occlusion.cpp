@@ -53,12 +53,12 @@ void AmbientOcclusion::begin(const gpu_scene::Camera& camera, const Settings& se
   camera_ = camera;
   seed_ = seed;
   runs_ = plan::runs(plan, "ambient_occlusion");
-  alpha_ = plan::runs(plan, "alpha");
   bent_ = runs_ && plan::runs(plan, "bent_normals");
   filter_ = runs_ && plan::runs(plan, "occlusion_filter");
-  lamp_views_ = runs_ && plan::runs(plan, "occlusion_lamp_views");
+  lamp_views_ = runs_ && settings.secondary_views > 0 && plan::runs(plan, "occlusion_lamp_views");
   deep_shadows_ = runs_ && plan::runs(plan, "deep_shadows");
-  phantom_views_ = runs_ && plan::runs(plan, "occlusion_phantom_views");
+  phantom_views_ = runs_ && plan::runs(plan, "occlusion_phantom_views") &&
+                   (settings.phantoms != Phantoms::kOff || settings.phantom_camera_count > 0);
   allocate();
 }
 
@@ -202,10 +202,14 @@ void AmbientOcclusion::draw_phantoms(const Sample& sample) {
   const std::vector<gpu_scene::LightView> from =
       settings_.phantom_camera_count > 0 ? phantom_cameras(settings_)
                                          : phantom_pair(camera_, focus_, sample.bounds);
-  // Maps hold for the next sample and frame unless something moved or an alpha threshold moves on.
-  const bool keep = !alpha_ && phantom_revision_ == sample.scene.shadow_revision();
-  phantom_maps_.render(from, settings_.phantom_resolution, sample.view, sample.scene, programs_,
-                       timer_, sample.view_block, keep);
+  // Maps hold for the next sample and frame unless something moved: alpha has the thresholds of the
+  // picture's first sample.
+  shared::View view = sample.view;
+  view.size.z = 0;
+  const bool keep = phantom_revision_ == sample.scene.shadow_revision() && phantom_cut_ == view.alpha.x;
+  phantom_cut_ = view.alpha.x;
+  phantom_maps_.render(from, settings_.phantom_resolution, view, sample.scene, programs_, timer_,
+                       sample.view_block, keep);
   phantom_revision_ = sample.scene.shadow_revision();
   sample.view_block.set(sample.view);
 }

@@ -97,7 +97,7 @@ class AmbientOcclusion {
   gpu_scene::Camera camera_;
   uint32_t seed_ = 0;
   bool runs_ = false, bent_ = false, filter_ = false, lamp_views_ = false, phantom_views_ = false;
-  bool deep_shadows_ = false, alpha_ = false;
+  bool deep_shadows_ = false;
 
   bool decided_ = false;
   std::vector<uint32_t> lamps_;  // in the light set, largest contribution first
@@ -108,6 +108,7 @@ class AmbientOcclusion {
 
   PhantomMaps phantom_maps_;
   int64_t phantom_revision_ = -1;
+  float phantom_cut_ = 0;        // the alpha threshold that they were drawn with
   int views_ = 0;                // of the last sample
   gl::Texture estimates_, closed_, combined_, filtered_, deep_;
   gl::Buffer block_;

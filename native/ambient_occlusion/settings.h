@@ -42,4 +42,8 @@ struct Settings {
   void check() const;
 };
 
+// Occlusion that only adds what rays of the radiance cache cannot meet, since it stands nearer than
+// `reach` metres. The camera alone sees enough of that, by few samples, unless phantom views are asked for.
+Settings contact(const Settings& settings, double reach);
+
 }  // namespace panoptes::ambient_occlusion

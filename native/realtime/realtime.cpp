@@ -94,7 +94,8 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
                      const Settings& settings, bool single, const scene::Scene& scene,
                      const gpu_scene::GpuScene& gpu, const tracing::TriangleList* triangles) {
   camera_ = camera;
-  if (settings.seed != settings_.seed) shadow_revision_ = -1;  // emitters have other points
+  // Emitters have other points, and alpha other thresholds.
+  if (settings.seed != settings_.seed || single != single_) shadow_revision_ = -1;
   settings_ = settings;
   plan_ = plan;
   surfaces_ = rasterize::GBufferOptions::of(plan);
@@ -150,13 +151,14 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
 }
 
 void Realtime::begin_occlusion() {
-  ambient_occlusion::Settings contact = settings_.occlusion;
-  // Rays of the cache have met what stands farther away.
-  if (cache_.runs()) contact.distance = std::min(contact.distance, float(cache_.voxel()));
-  const bool picture = contact.picture != ambient_occlusion::Picture::kNone;
-  const bool pass = runs(plan_, "pass_ao") && contact.distance < settings_.occlusion.distance;
-  occlusion_.begin(camera_, picture ? settings_.occlusion : contact, plan_, settings_.seed);
-  if (pass && !picture)
+  const ambient_occlusion::Settings& asked = settings_.occlusion;
+  const bool picture = asked.picture != ambient_occlusion::Picture::kNone;
+  // Whether light is darkened by what the AO pass shows as well.
+  const bool same = picture || !cache_.runs() || (runs(plan_, "pass_ao") && asked.distance <= cache_.voxel());
+  const bool pass = runs(plan_, "pass_ao") && !same;
+  occlusion_.begin(camera_, same ? asked : ambient_occlusion::contact(asked, cache_.voxel()), plan_,
+                   settings_.seed);
+  if (pass)
     pass_occlusion_.begin(camera_, settings_.occlusion, plan_, settings_.seed);
   else
     pass_occlusion_.release();
@@ -262,7 +264,7 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
   cache_.begin_lamps();
   if (!shadows_ || set.batches.empty()) choose_views(0, view, nullptr, gpu);
   for (const rasterize::LightBatch& batch : set.batches) {
-    if (shadows_) draw_shadow_maps(set, batch, view, gpu, false);
+    if (shadows_) draw_shadow_maps(set, batch, view, gpu, false, false);
     stop_if(cancelled);
     if (shadows_ && &batch == &set.batches.front()) choose_views(0, view, &set, gpu);
     if (!cache_.runs()) return;
@@ -455,13 +457,13 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
 
   // Maps hold for the next sample and frame unless a lamp's point or an alpha threshold moves on,
   // or another batch has overwritten them.
-  const bool lasting =
-      !soft_ && !alpha_ && set.batches.size() <= 1 && (emitters_.empty() || single_);
+  const bool lasting = !soft_ && (!alpha_ || single_ || filtered_) && set.batches.size() <= 1 &&
+                       (emitters_.empty() || single_);
   const bool keep = lasting && shadow_revision_ == gpu.shadow_revision();
   shadow_revision_ = lasting ? gpu.shadow_revision() : -1;
   if (set.batches.empty()) find_occlusion(index, view, nullptr, gpu, cancelled);
   for (const rasterize::LightBatch& batch : set.batches) {
-    if (shadows_) draw_shadow_maps(set, batch, view, gpu, keep);
+    if (shadows_) draw_shadow_maps(set, batch, view, gpu, lasting, keep);
     stop_if(cancelled);
     if (&batch == &set.batches.front())
       find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
@@ -491,8 +493,10 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
 
 void Realtime::draw_shadow_maps(const rasterize::LightSet& set, const rasterize::LightBatch& batch,
                                 const shared::View& view, const gpu_scene::GpuScene& gpu,
-                                bool keep) {
-  shadow_maps_.render(set, batch, settings_.shadows, view, gpu, programs_, timer_, view_block_, keep);
+                                bool lasting, bool keep) {
+  shared::View from = view;
+  if (lasting) from.size.z = 0;  // alpha thresholds are those of the picture's first sample
+  shadow_maps_.render(set, batch, settings_.shadows, from, gpu, programs_, timer_, view_block_, keep);
   view_block_.set(view);
 }
 

@@ -98,8 +98,10 @@ class Realtime {
   // What only the picture's first sample can tell, where another one is rendered first.
   void look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
                             const std::atomic<bool>& cancelled);
+  // `lasting` maps serve the samples that follow, too.
   void draw_shadow_maps(const rasterize::LightSet& set, const rasterize::LightBatch& batch,
-                        const shared::View& view, const gpu_scene::GpuScene& gpu, bool keep);
+                        const shared::View& view, const gpu_scene::GpuScene& gpu, bool lasting,
+                        bool keep);
   ambient_occlusion::AmbientOcclusion::Sample occlusion_sample(uint32_t index,
                                                                const shared::View& view,
                                                                const rasterize::LightSet* lights,

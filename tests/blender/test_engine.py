@@ -322,23 +322,28 @@ class TestForReal:
             bpy.ops.render.render()
 
 
-def test_penumbrae_are_sampled_in_final_renders_and_filtered_in_views(scene):
+def test_penumbrae_are_sampled_where_samples_are_many(scene):
     scene.camera = bpy.data.objects.new('camera', bpy.data.cameras.new('camera'))
     scene.collection.objects.link(scene.camera)
     region = types.SimpleNamespace(width=64, height=32)
     looking = types.SimpleNamespace(view_perspective='PERSP', view_matrix=Matrix(), window_matrix=Matrix())
     space = types.SimpleNamespace(use_render_border=False)
 
-    def filtered(mode):
+    def filtered(mode, samples=(16, 0), part=False):
         scene.panoptes.realtime.penumbrae = mode
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        final = requests.final(depsgraph, ['Combined'], pytest.fail)
+        scene.panoptes.samples, scene.panoptes.first_sample = samples
+        final = requests.final(depsgraph, ['Combined'], pytest.fail, part)
         view, _ = requests.viewport(depsgraph, region, looking, space, 1, pytest.fail)
         return [request['settings']['filter_penumbrae'] for request in (final, view)]
 
     assert filtered('AUTO') == [False, True]
     assert filtered('SAMPLED') == [False, False]
     assert filtered('FILTERED') == [True, True]
+    assert filtered('AUTO', (4, 0)) == [True, True]
+    # Parts of a picture look as they do in the whole.
+    assert filtered('AUTO', (4, 4)) == filtered('AUTO', (4, 0), part=True) == [False, True]
+    assert filtered('SAMPLED', (4, 0)) == [False, False]
 
 
 def test_pace_of_the_time_left():

@@ -155,6 +155,25 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
          s.occlusion.strength = 0;
        },
        {"world_light", "world_background", "radiance_cache", "cache_world", "cache_bounces"}},
+      {"contact of what the cache shines on, which the camera sees",
+       [](auto& f, auto& s) {
+         f.lamps[0] = f.shadow_lamps[0] = 1;
+         s.cache.enabled = true;
+         s.cache.bounces = 1;
+         s.samples = 16;
+       },
+       {"direct_light", "point_shadows", "radiance_cache", "cache_first_bounce", "ambient_occlusion",
+        "bent_normals"}},
+      {"the AO pass beside it, for which all views are asked",
+       [](auto& f, auto& s) {
+         f.lamps[0] = f.shadow_lamps[0] = 1;
+         s.cache.enabled = true;
+         s.cache.bounces = 1;
+         s.samples = 16;
+         s.passes = pass_set({film::Pass::kAo});
+       },
+       {"direct_light", "point_shadows", "radiance_cache", "cache_first_bounce", "pass_ao",
+        "ambient_occlusion", "occlusion_lamp_views", "occlusion_phantom_views", "bent_normals"}},
       {"a cache that nothing shines into", [](auto&, auto& s) { s.cache.enabled = true; }, {}},
       {"passes with a divisor",
        [](auto&, auto& s) {
