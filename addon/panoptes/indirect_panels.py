@@ -77,6 +77,8 @@ class PANOPTES_PT_indirect_gathering(_IndirectSubPanel, bpy.types.Panel):
         column.active = settings.enabled
         column.prop(settings, 'directions')
         column.prop(settings, 'march_steps')
+        column.prop(settings, 'blend')
+        column.prop(settings, 'rebuild_every')
 
 
 class PANOPTES_PT_specular_rays(_RealtimePanel, bpy.types.Panel):

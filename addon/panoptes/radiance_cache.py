@@ -39,6 +39,7 @@ def settings(depsgraph, warn):
         'rsm_spread': ours.rsm_spread,
         'rsm_mixed': ours.rsm_mixed,
         'blend': ours.blend,
+        'rebuild_every': ours.rebuild_every,
         'picture': debug_pictures.of_technique(scene.panoptes, debug_pictures.CACHE),
     }
 

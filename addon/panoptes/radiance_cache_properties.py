@@ -156,9 +156,15 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
         default=True)
     blend: FloatProperty(
         name='Keep',
-        description='Share of the indirect light before that a 3D View keeps while lamps and materials rest, so '
-                    'that it does not flicker as the view turns. Final renders keep none',
+        description='Share of the indirect light before that a 3D View shows while things move, where light has '
+                    'hardly changed, so that it does not flicker. Where it has, the new light shows at once; a view '
+                    'that rests and final renders keep none',
         default=0.8, min=0.0, max=0.98, subtype='FACTOR')
+    rebuild_every: IntProperty(
+        name='Rebuild Every',
+        description='While things move in a 3D View, light meets them where they were up to so many frames ago, '
+                    'which makes each frame cheaper. A view that rests and final renders know where they are',
+        default=1, min=1, max=16)
 
 
 class PanoptesObjectSettings(bpy.types.PropertyGroup):

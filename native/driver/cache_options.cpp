@@ -27,7 +27,8 @@ void set_cache(radiance_cache::Settings& s, const std::string& option) {
       {"rsm_resolution", [&](auto& v) { s.rsm_resolution = int(number(v)); }},
       {"rsm_spread", [&](auto& v) { s.rsm_spread = number(v); }},
       {"rsm_mixed", [&](auto& v) { s.rsm_mixed = number(v) != 0; }},
-      {"blend", [&](auto& v) { s.blend = number(v); }}};
+      {"blend", [&](auto& v) { s.blend = number(v); }},
+      {"rebuild_every", [&](auto& v) { s.rebuild_every = int(number(v)); }}};
   set_option(keys, option, "--cache");
 }
 

@@ -110,6 +110,7 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
   settings.occlusion = request.occlusion;
   settings.cache = request.cache;
   settings.specular_rays = request.specular_rays;
+  settings.follows = request.viewport && request.last_sample - request.first_sample > 1;
   const rasterize::GBufferOptions surfaces = rasterize::GBufferOptions::of(plan);
   gpu_scene_.check_programs(
       [&](const gpu_scene::GpuMaterial& material) {

@@ -63,6 +63,7 @@ radiance_cache::Settings cache_settings(const py::dict& dict) {
   members.read("rsm_spread", s.rsm_spread);
   members.read("rsm_mixed", s.rsm_mixed);
   members.read("blend", s.blend);
+  members.read("rebuild_every", s.rebuild_every);
   members.read("picture", s.picture, rc::kPictureNames);
   members.check_all_known();
   return s;

@@ -103,6 +103,14 @@ gl::ProgramSource gather_program(const GatherOptions& options) {
   return source;
 }
 
+gl::ProgramSource blend_program(Encoding encoding, bool split) {
+  gl::ProgramSource source = compute("cells of two frames", "radiance_cache/blend.comp");
+  add_encoding(source, encoding);
+  source.defines.push_back(fmt::format("CACHE_BLOCK {}", kCellsBlock));
+  source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(split)));
+  return source;
+}
+
 gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache) {
   gl::ProgramSource source = compute("light of surfels", "radiance_cache/bounce.comp");
   add_volume(source);

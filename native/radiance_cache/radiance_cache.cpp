@@ -61,14 +61,20 @@ void RadianceCache::begin(const Frame& frame) {
            (scaled_ || plan::runs(frame.plan, "pass_diffdir") || plan::runs(frame.plan, "pass_diffind") ||
             plan::runs(frame.plan, "pass_glossdir") || plan::runs(frame.plan, "pass_glossind") ||
             plan::runs(frame.plan, "pass_transdir") || plan::runs(frame.plan, "pass_transind"));
-  list_origin_ = frame.triangles.origin();
-  grids_ = choose_grids(frame.scene.bounds(), frame.camera, settings_);
+  const std::vector<Grid> grids = choose_grids(frame.scene.bounds(), frame.camera, settings_);
+  State state = state_of(frame, grids);
+  kept_ = frame.follows && lit_ && !stale_ && state == state_;
+  follows_ = frame.follows;
+  if (!follows_) history_.release();
+  if (kept_) return;
+  stale_ = may_lag(frame, state);
+  lag_ = stale_ ? lag_ + 1 : 0;
+  state_ = std::move(state);
+  lit_ = false;
+  grids_ = grids;
   const glm::dvec3 high = grids_.back().low + grids_.back().cell * glm::dvec3(grids_.back().cells);
   whole_ = glm::all(glm::lessThanEqual(grids_.back().low, glm::dvec3(frame.scene.bounds().low))) &&
            glm::all(glm::greaterThanEqual(high, glm::dvec3(frame.scene.bounds().high)));
-  volume_.update(grids_, settings_.voxel_fill, frame.triangles, frame.gpu, frame.view_block,
-                 programs_, timer_);
-  write_block(list_block_, list_origin_);
   transmission_ = plan::runs(frame.plan, "transmission");
   occupancy_ = settings_.occupancy;
   if (occupancy_ == Occupancy::kAuto) {
@@ -78,6 +84,7 @@ void RadianceCache::begin(const Frame& frame) {
                            plan::runs(frame.plan, "specular_rays");
     occupancy_ = elsewhere ? Occupancy::kGeometry : Occupancy::kDepth;
   }
+  if (!stale_) update_volume(frame.triangles, frame.gpu, frame.view_block);
   find_seeds();
   active_ = 0;
   const int64_t texels = int64_t(volume_.volumes().count.y) * cell_texels(settings_.encoding) *
@@ -85,8 +92,39 @@ void RadianceCache::begin(const Frame& frame) {
   want(cells_, cells_texels_, GL_RGBA32F, texels * 16);
 }
 
+RadianceCache::State RadianceCache::state_of(const Frame& frame, const std::vector<Grid>& grids) {
+  State state{frame.settings, frame.seed, {}, grids, frame.scene.lights(),
+              {frame.gpu.geometry_revision(), frame.gpu.surface_revision(), frame.gpu.world_revision(),
+               frame.gpu.emission_revision(), frame.gpu.shadow_revision()}};
+  for (const plan::Effect& effect : frame.plan) state.effects.push_back(effect.runs);
+  return state;
+}
+
+bool RadianceCache::may_lag(const Frame& frame, const State& state) const {
+  return frame.follows && volume_.solid() > 0 && lag_ + 1 < settings_.rebuild_every &&
+         state.settings == state_.settings && state.grids == state_.grids &&
+         list_origin_ == glm::dvec3(frame.triangles.origin());
+}
+
+void RadianceCache::update_volume(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
+                                  gpu_scene::ViewBlock& view_block) {
+  list_origin_ = triangles.origin();
+  volume_.update(grids_, settings_.voxel_fill, triangles, gpu, view_block, programs_, timer_);
+  write_block(list_block_, list_origin_);
+}
+
+void RadianceCache::catch_up(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
+                             gpu_scene::ViewBlock& view_block) {
+  stale_ = false;
+  lag_ = 0;
+  update_volume(triangles, gpu, view_block);
+  find_seeds();
+}
+
 void RadianceCache::release() {
-  runs_ = false;
+  runs_ = lit_ = kept_ = blended_ = stale_ = false;
+  lag_ = 0;
+  history_.release();
   grids_.clear();
   volume_.release();
   for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_}) *texture = gl::Texture();
@@ -116,12 +154,15 @@ void RadianceCache::list_cells() {
   seeds_texels_.bind(0);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, counter.id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, seeds_.id());
   gl::dispatch(cells, GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   counter.read(0, 4, &active_);
 }
 
 void RadianceCache::see(const rasterize::GBuffer& g_buffer, const glm::dvec3& origin) {
   if (!runs_) return;
+  gl::Buffer counter(4);
+  counter.clear();
   {
     gl::PassScope scope(timer_, "radiance_cache_cells");
     write_block(view_block_, origin);
@@ -136,8 +177,16 @@ void RadianceCache::see(const rasterize::GBuffer& g_buffer, const glm::dvec3& or
     const glm::ivec2 squares((g_buffer.width() + side - 1) / side, (g_buffer.height() + side - 1) / side);
     glUniform3i(0, squares.x, squares.y, side);
     glUniform1ui(1, transmission_);
-    gl::dispatch(uint32_t(squares.x * squares.y), GL_TEXTURE_FETCH_BARRIER_BIT);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, counter.id());
+    gl::dispatch(uint32_t(squares.x * squares.y), GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   }
+  if (kept_) {
+    uint32_t unlit = 0;
+    counter.read(0, 4, &unlit);
+    kept_ = unlit == 0;
+    if (kept_) return;
+  }
+  lit_ = false;
   list_cells();
   march();
 }
@@ -174,13 +223,13 @@ void RadianceCache::march() {
 }
 
 void RadianceCache::begin_lamps() {
-  if (!lamps_) return;
+  if (!lamps_ || kept_) return;
   want(direct_, std::max(int64_t(volume_.solid()), int64_t(1)) * 2 * 16);
   direct_.clear();
 }
 
 void RadianceCache::add_lamps(const Lamps& lamps) {
-  if (!lamps_ || volume_.solid() == 0) return;
+  if (!lamps_ || kept_ || volume_.solid() == 0) return;
   gl::PassScope scope(timer_, "cache_first_bounce");
   programs_.get(light_surfels_program(lamps.shadows)).use();
   bind_volume();
@@ -197,7 +246,13 @@ void RadianceCache::add_lamps(const Lamps& lamps) {
 }
 
 void RadianceCache::gather() {
+  blended_ = false;
+  if (kept_) {
+    remember(0);
+    return;
+  }
   cells_.clear();  // cells that are not listed hold no light
+  lit_ = true;
   if (active_ == 0) return;
   if (world_light_) gather_rays(false);
   for (int i = 0; i < bounces_; ++i) {
@@ -206,6 +261,16 @@ void RadianceCache::gather() {
     bounce(cache);
     gather_rays(true);
   }
+  remember(settings_.blend);
+  blended_ = follows_ && settings_.blend > 0;
+}
+
+void RadianceCache::remember(float share) {
+  if (!follows_ || settings_.blend <= 0) return;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  history_.add({cells_, cells_texels_, settings_.encoding, split_, grids_, volume_.volumes(), list_block_,
+                list_, active_},
+               share);
 }
 
 void RadianceCache::bounce(bool cache) {
@@ -258,7 +323,7 @@ LookUpOptions RadianceCache::look_up(int unit, int block) const {
 void RadianceCache::bind(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
                          const glm::dvec3& origin) {
   write_block(view_block_, origin);
-  cells_texels_.bind(options.unit);
+  shown().bind(options.unit);
   glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
   if (options.scaled) bind_scales(options, gpu, origin);
 }
@@ -285,7 +350,7 @@ void RadianceCache::show(const LookUpOptions& options, const glm::dvec3& origin,
   programs_.get(picture_program(settings_.picture, options, film)).use();
   bind_volume();
   write_block(view_block_, origin);
-  cells_texels_.bind(options.unit);
+  shown().bind(options.unit);
   glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
   seeds_texels_.bind(0);
   const glm::vec3 offset(origin - list_origin_);

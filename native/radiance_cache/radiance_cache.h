@@ -1,6 +1,8 @@
 // The radiance cache: light that has left a first surface, and the world's light past what stands in
 // its way, on a lattice of cells (thesis, chapter 5).
 //
+// Frames that follow each other keep what has not changed, and a share of the light that was shown.
+//
 // Once a frame, surfels of the geometry volume are lit by the lamps through their shadow maps; rays
 // that were marched from the cells bring what surfels send on, and the world's light where they leave
 // the scene; and surfels are lit by the cells for the next bounce. What rays meet is kept while
@@ -16,6 +18,7 @@
 #include "gpu_scene/view_block.h"
 #include "plan/effect.h"
 #include "radiance_cache/geometry_volume.h"
+#include "radiance_cache/history.h"
 #include "radiance_cache/settings.h"
 #include "radiance_cache/world_light.h"
 #include "rasterize/g_buffer.h"
@@ -24,6 +27,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -45,7 +49,7 @@ int cell_texels(Encoding encoding);
 class RadianceCache {
  public:
   RadianceCache(gl::ProgramCache& programs, gl::PassTimer& timer)
-      : programs_(programs), timer_(timer) {}
+      : programs_(programs), timer_(timer), history_(programs, timer) {}
 
   struct Frame {
     const gpu_scene::Camera& camera;
@@ -57,6 +61,8 @@ class RadianceCache {
     const tracing::TriangleList& triangles;  // of that scene
     gpu_scene::ViewBlock& view_block;        // overwritten
     WorldLight& world;                       // up to date
+    // One of frames that come one after the other while the scene changes little, as in a 3D View.
+    bool follows = false;
   };
   // Prepares for a frame: what depends on geometry alone. Releases everything if the plan does not run it.
   void begin(const Frame& frame);
@@ -83,6 +89,13 @@ class RadianceCache {
   void add_lamps(const Lamps& lamps);
   // Makes the cells' light.
   void gather();
+  // From here on look-ups find the light of this frame alone.
+  void settle() { blended_ = false; }
+  // Whether the geometry volume is that of an earlier frame, since it is not rebuilt in each.
+  bool stale() const { return runs_ && stale_; }
+  // Rebuilds it: then see(), lamps and gather() follow as in the picture's first sample.
+  void catch_up(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
+                gpu_scene::ViewBlock& view_block);
 
   // The side of the finest voxels, m: what stands nearer to a surface than that, rays do not meet.
   double voxel() const { return grids_.empty() ? 0 : grids_.front().cell / grids_.front().voxels; }
@@ -94,6 +107,23 @@ class RadianceCache {
   void show(const LookUpOptions& options, const glm::dvec3& origin, const film::Film& film);
 
  private:
+  // What the light depends on. Of the camera it does only in that more cells are seen.
+  struct State {
+    Settings settings;
+    uint32_t seed = 0;
+    std::vector<bool> effects;  // of the plan, whether they run
+    std::vector<Grid> grids;
+    std::vector<scene::Light> lights;
+    std::array<int64_t, 5> revisions{};
+    bool operator==(const State&) const = default;
+  };
+  static State state_of(const Frame& frame, const std::vector<Grid>& grids);
+  // Whether the volume may lag behind geometry that moves.
+  bool may_lag(const Frame& frame, const State& state) const;
+  void update_volume(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
+                     gpu_scene::ViewBlock& view_block);
+  const gl::Texture& shown() const { return blended_ ? history_.texels() : cells_texels_; }
+  void remember(float share);
   void find_seeds();
   void list_cells();
   void march();
@@ -122,6 +152,15 @@ class RadianceCache {
   Occupancy occupancy_ = Occupancy::kGeometry;  // never kAuto
   bool transmission_ = false;
   uint32_t active_ = 0;
+
+  CellHistory history_;
+  State state_;
+  bool follows_ = false;
+  bool lit_ = false;      // cells hold the light of state_
+  bool kept_ = false;     // they did when the frame began, and nobody has seen any others since
+  bool blended_ = false;  // what is shown has a share of earlier frames
+  bool stale_ = false;
+  int lag_ = 0;           // frames that the volume is behind
 };
 
 gl::ProgramSource find_seeds_program();

@@ -40,6 +40,7 @@ void Settings::check() const {
   check_range(depth_stride, 1, 64, "pixels of stride");
   check_range(rsm_samples, 1, 4096, "samples of a reflective shadow map");
   check_range(rsm_resolution, 16, 1024, "texels of a reflective shadow map");
+  check_range(rebuild_every, 1, 16, "frames between rebuilds of the geometry volume");
   check_range(region_count, 0, kMostRegions, "regions");
   if (!(voxel_fill >= 0 && voxel_fill <= 1))
     fail("a voxel cannot be solid from {} of its face on: choose 0 to 1", voxel_fill);

@@ -17,6 +17,7 @@ constexpr int kMostBounces = 8, kMostCascades = 3;
 struct Region {
   glm::dmat4 world_to_box{1.0};  // the box is [-1, 1]^3
   float luminance = 1, chrominance = 1;
+  bool operator==(const Region&) const = default;
 };
 
 // How many cells hold light, of all that there are.
@@ -54,12 +55,16 @@ struct Settings {
   float rsm_spread = 0.8f;   // s of (5.3), above 0, at most 1
   bool rsm_mixed = true;     // half of the samples from the whole map, by the balance heuristic
 
-  // Share of the frame before in the viewport, 0 .. .98, where light did not change.
+  // Of frames that follow each other in a 3D View, whose picture refines to what it is without.
+  // Share of the light shown before, 0 .. .98, where that has hardly changed.
   float blend = 0.8f;
+  int rebuild_every = 1;  // frames, 1 .. 16: while geometry moves, the volume lags behind by less
+
   Picture picture = Picture::kNone;
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;
+  bool operator==(const Settings&) const = default;
 };
 
 }  // namespace panoptes::radiance_cache

@@ -111,6 +111,7 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
   cascades_ = shadows_ && runs(plan, "sun_cascades");
   background_ = runs(plan, "world_background") && gpu.world();
   world_light_ = runs(plan, "world_light");
+  triangles_ = triangles;
   depth_ = runs(plan, "pass_depth");
   deep_shadows_ = runs(plan, "deep_shadows");
   lights_ = scene.lights();
@@ -144,7 +145,8 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
     world_.update(scene.world(), gpu, programs_);
   }
   if (triangles)
-    cache_.begin({camera, plan, settings.cache, settings.seed, scene, gpu, *triangles, view_block_, world_});
+    cache_.begin({camera, plan, settings.cache, settings.seed, scene, gpu, *triangles, view_block_, world_,
+                  settings.follows});
   else
     cache_.release();
   begin_occlusion();
@@ -186,6 +188,10 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
                              const Surroundings& around, film::Film& film,
                              const std::atomic<bool>& cancelled) {
   const gpu_scene::GpuScene& gpu = around.scene;
+  // What the cache makes once a picture, and again where frames that follow each other have put it off.
+  const bool late = cache_.runs() && index > first && cache_.stale();
+  const bool lights_cache = cache_.runs() && (index == 0 || late);
+  if (late) cache_.catch_up(*triangles_, gpu, view_block_);
   if (index == first && first > 0 && (cascades_ || undecided() || cache_.runs()))
     look_at_first_sample(sharing, gpu, cancelled);
   const shared::View view = sample_view(index, sharing);
@@ -204,16 +210,17 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
   if (cascades_ && index == 0) find_cascades(view);
-  if (cache_.runs() && index == 0) {
+  if (lights_cache) {
     cache_.see(g_buffer_, glm::dvec3(glm::vec3(view.world_origin)));
     cache_.begin_lamps();
   }
   if (specular_rays_.runs() && !shows_occlusion() && !shows_cache()) trace_specular(index, view, around, cancelled);
   if (lamps_)
-    add_lamps(index, view, gpu, cancelled);
+    add_lamps(index, view, gpu, lights_cache, cancelled);
   else
     find_occlusion(index, view, nullptr, gpu, cancelled);
-  if (cache_.runs() && index == 0) cache_.gather();
+  if (lights_cache) cache_.gather();
+  if (index > first) cache_.settle();
   stop_if(cancelled);
 
   if (background_) {
@@ -449,7 +456,8 @@ void Realtime::store_lights(const rasterize::LightSet& set) {
 }
 
 void Realtime::add_lamps(uint32_t index, const shared::View& view,
-                         const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled) {
+                         const gpu_scene::GpuScene& gpu, bool lights_cache,
+                         const std::atomic<bool>& cancelled) {
   const rasterize::LightSet set = place(index, view, gpu);
   store_lights(set);
   clear(diffuse_light_);
@@ -467,7 +475,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     stop_if(cancelled);
     if (&batch == &set.batches.front())
       find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
-    if (cache_.runs() && index == 0) light_cache(batch, view);
+    if (lights_cache) light_cache(batch, view);
     gl::PassScope scope(timer_, "direct_light");
     const bool rays = specular_rays_.runs() && emissive_light_;
     programs_.get(direct_light_program({shadows_, filtered_, rays, surfaces_})).use();

@@ -34,6 +34,9 @@ struct Settings {
   specular_rays::Settings specular_rays;
   uint32_t seed = 0;
   bool transparent_film = false;  // the world behind the scene is not part of Combined
+  // One of frames that come one after the other while the scene changes little, as in a 3D View: until
+  // its second sample a frame may show some of the light before.
+  bool follows = false;
   float filter_width = 1.5f;  // pixels, of the Blackman-Harris window to each side
 };
 
@@ -132,8 +135,8 @@ class Realtime {
   void bind_ambient(const std::optional<radiance_cache::LookUpOptions>& cache,
                     const gpu_scene::GpuScene& gpu, const shared::View& view);
   void compose(const gpu_scene::GpuScene& gpu, const shared::View& view, film::Film& film);
-  void add_lamps(uint32_t index, const shared::View& view,
-                 const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
+  void add_lamps(uint32_t index, const shared::View& view, const gpu_scene::GpuScene& gpu,
+                 bool lights_cache, const std::atomic<bool>& cancelled);
 
   gl::DeviceInfo device_;
   gl::ProgramCache& programs_;
@@ -148,6 +151,7 @@ class Realtime {
   bool deep_shadows_ = false, emissive_light_ = false, single_ = false, filtered_ = false, cascades_ = false;
   std::vector<scene::Light> lights_;
   scene::Bounds bounds_;
+  const tracing::TriangleList* triangles_ = nullptr;  // of the frame
 
   gpu_scene::ViewBlock view_block_;
   rasterize::GBuffer g_buffer_;

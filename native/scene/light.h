@@ -28,6 +28,7 @@ struct Light {
   glm::vec3 direction() const;
   // Irradiance at normal incidence (suns, W/m2) or radiant intensity along the axis (W/sr).
   glm::vec3 power() const;
+  bool operator==(const Light&) const = default;
   // True when the lamp is more than a point, so that its shadows have penumbrae.
   bool extended() const;
 };

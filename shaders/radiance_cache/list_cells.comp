@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) writeonly buffer List { uint active_cells[]; };
 layout(std430, binding = 1) buffer Counter { uint active_count; };
+layout(std430, binding = 2) buffer Marks { uint marks[]; };  // the seeds
 layout(binding = 0) uniform usamplerBuffer seeds;  // of all cells
 
 bool occupied_by(uint seed) {
@@ -34,5 +35,7 @@ void main() {
     occupied = occupied || occupied_by(texelFetch(seeds, cell_number(volume, at)).x);
   }
 #endif
-  if (occupied && (seed & SEED_CODE) > 0u) active_cells[atomicAdd(active_count, 1u)] = number;
+  if (!occupied || (seed & SEED_CODE) == 0u) return;
+  active_cells[atomicAdd(active_count, 1u)] = number;
+  marks[number] = seed | CELL_LISTED;
 }

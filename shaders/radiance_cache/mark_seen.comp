@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 layout(binding = DEPTH_UNIT) uniform sampler2D depth;  // 0 where no surface is
 layout(std430, binding = 0) buffer Seeds { uint seeds[]; };
+layout(std430, binding = 1) buffer Counter { uint unlit; };  // cells that are seen and not listed
 layout(location = 0) uniform ivec3 squares;  // across, up, pixels a side
 layout(location = 1) uniform bool behind;    // surfaces let light in from behind, too
 
@@ -20,7 +21,10 @@ void mark(vec3 position, vec3 normal) {
     ivec3 cell = min(corner + ivec3(i & 1, i >> 1 & 1, i >> 2), volume.cells.xyz - 1);
     int number = cell_number(volume, cell);
     // Neighbours see the same cells.
-    if ((seeds[number] & CELL_SEEN) == 0u) atomicOr(seeds[number], CELL_SEEN);
+    if ((seeds[number] & CELL_SEEN) != 0u) continue;
+    uint seed = atomicOr(seeds[number], CELL_SEEN);
+    bool holds_light = (seed & CELL_LISTED) != 0u || (seed & SEED_CODE) == 0u;
+    if ((seed & CELL_SEEN) == 0u && !holds_light) atomicAdd(unlit, 1u);
   }
 }
 

@@ -53,7 +53,7 @@ class TestSettings:
             'luminance': 1.0, 'chrominance': 1.0, 'regions': [], 'first_bounce': 'surfaces', 'directions': 64,
             'march_steps': 0, 'voxel_fill': 0.75, 'occupancy': 'auto', 'depth_stride': 4, 'dilate': True,
             'rsm_samples': 200, 'rsm_resolution': 128, 'rsm_spread': pytest.approx(0.8), 'rsm_mixed': True,
-            'blend': pytest.approx(0.8), 'picture': 'none'}
+            'blend': pytest.approx(0.8), 'rebuild_every': 1, 'picture': 'none'}
         assert final()['settings']['specular_rays'] == {'mode': 'auto', 'roughness': pytest.approx(0.3)}
 
     @pytest.mark.parametrize('name, value', [
@@ -61,7 +61,8 @@ class TestSettings:
         ('encoding', 'Y3CO2CG2'), ('encoding', 'RGB2'), ('luminance', 0.5), ('chrominance', 0.0),
         ('first_bounce', 'RSM'), ('directions', 512), ('march_steps', 12), ('voxel_fill', 1.0),
         ('occupancy', 'DEPTH'), ('depth_stride', 1), ('dilate', False), ('rsm_samples', 4096),
-        ('rsm_resolution', 1024), ('rsm_spread', 0.5), ('rsm_mixed', False), ('blend', 0.0)])
+        ('rsm_resolution', 1024), ('rsm_spread', 0.5), ('rsm_mixed', False), ('blend', 0.0),
+        ('rebuild_every', 16)])
     def test_values(self, ours, name, value):
         before = sent()
         setattr(ours, name, value)
@@ -189,8 +190,8 @@ class TestPanels:
     def test_real_time(self, ours):
         drawn = sum((draw(panel) for panel in self.RENDER), [])
         assert len(drawn) == len(set(drawn))
-        # Reflective shadow maps and blending are not part of this version.
-        shown = {name for name in names(ours) if not name.startswith('rsm_')} - {'enabled', 'first_bounce', 'blend'}
+        # Reflective shadow maps are not part of this version.
+        shown = {name for name in names(ours) if not name.startswith('rsm_')} - {'enabled', 'first_bounce'}
         assert set(drawn) == shown
         ours.occupancy = 'ALL'
         assert not {'depth_stride', 'dilate'} & set(draw(self.RENDER[1]))

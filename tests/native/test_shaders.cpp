@@ -278,6 +278,7 @@ class Shaders : public ::testing::Test {
           if (bits == 15 || encoding % 3 == 0)
             with_film(film::PassSet().set(), true, bits, split, split, cache);
         add(radiance_cache::bounce_program(cache, split, true));
+        add(radiance_cache::blend_program(cache.encoding, split));
         add(specular_rays::surroundings_program({surfaces(15), false}, {split, cache}));
         for (bool world : {false, true})
           for (bool bounced : {false, true})
