@@ -22,6 +22,7 @@ void set_cache(radiance_cache::Settings& s, const std::string& option) {
       {"march_steps", [&](auto& v) { s.march_steps = int(number(v)); }},
       {"voxel_fill", [&](auto& v) { s.voxel_fill = number(v); }},
       {"depth_stride", [&](auto& v) { s.depth_stride = int(number(v)); }},
+      {"walls", [&](auto& v) { s.walls = number(v) != 0; }},
       {"dilate", [&](auto& v) { s.dilate = number(v) != 0; }},
       {"rsm_samples", [&](auto& v) { s.rsm_samples = int(number(v)); }},
       {"rsm_resolution", [&](auto& v) { s.rsm_resolution = int(number(v)); }},

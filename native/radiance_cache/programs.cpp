@@ -58,6 +58,8 @@ void LookUpOptions::add_defines(gl::ProgramSource& source) const {
   add_encoding(source, encoding);
   source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(split)));
   source.defines.push_back(fmt::format("CACHE_UNIT {}", unit));
+  source.defines.push_back(fmt::format("CACHE_WALLS {}", int(walls)));
+  source.defines.push_back(fmt::format("REACH_UNIT {}", unit + 3));
   source.defines.push_back(fmt::format("CACHE_BLOCK {}", block));
   source.defines.push_back(fmt::format("CACHE_SCALES {}", int(scaled)));
   source.defines.push_back(fmt::format("SCALES_UNIT {}", unit + 2));
@@ -66,6 +68,12 @@ void LookUpOptions::add_defines(gl::ProgramSource& source) const {
 
 gl::ProgramSource find_seeds_program() {
   gl::ProgramSource source = compute("seeds of cells", "radiance_cache/find_seeds.comp");
+  add_volume(source);
+  return source;
+}
+
+gl::ProgramSource find_reach_program() {
+  gl::ProgramSource source = compute("what reaches voxels", "radiance_cache/find_reach.comp");
   add_volume(source);
   return source;
 }
@@ -86,9 +94,9 @@ gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate) {
   return source;
 }
 
-gl::ProgramSource march_program(int steps) {
+gl::ProgramSource march_program(int steps, bool walls) {
   gl::ProgramSource source = compute("rays of cells", "radiance_cache/march.comp");
-  source.defines = {fmt::format("MARCH_STEPS {}", steps)};
+  source.defines = {fmt::format("MARCH_STEPS {}", steps), fmt::format("WALLS {}", int(walls))};
   add_volume(source);
   return source;
 }

@@ -109,7 +109,8 @@ bool RadianceCache::may_lag(const Frame& frame, const State& state) const {
 void RadianceCache::update_volume(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
                                   gpu_scene::ViewBlock& view_block) {
   list_origin_ = triangles.origin();
-  volume_.update(grids_, settings_.voxel_fill, triangles, gpu, view_block, programs_, timer_);
+  if (volume_.update(grids_, settings_.voxel_fill, triangles, gpu, view_block, programs_, timer_))
+    reached_ = false;
   write_block(list_block_, list_origin_);
 }
 
@@ -127,20 +128,41 @@ void RadianceCache::release() {
   history_.release();
   grids_.clear();
   volume_.release();
-  for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_}) *texture = gl::Texture();
-  for (gl::Buffer* buffer : {&list_, &seeds_, &met_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
+  for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_, &reach_texels_}) *texture = gl::Texture();
+  for (gl::Buffer* buffer : {&list_, &seeds_, &reach_, &met_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
                             &scales_block_})
     *buffer = gl::Buffer();
 }
 
 void RadianceCache::find_seeds() {
-  gl::PassScope scope(timer_, "radiance_cache_cells");
   const uint32_t cells = uint32_t(volume_.volumes().count.y);
   want(seeds_, seeds_texels_, GL_R32UI, int64_t(cells) * 4);
-  programs_.get(find_seeds_program()).use();
+  {
+    gl::PassScope scope(timer_, "radiance_cache_cells");
+    programs_.get(find_seeds_program()).use();
+    bind_volume();
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
+    gl::dispatch(cells, GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  }
+  if (!settings_.walls) {
+    reach_texels_ = gl::Texture();
+    reach_ = gl::Buffer();
+  } else if (!reached_ || !reach_) {
+    find_reach();
+  }
+}
+
+void RadianceCache::find_reach() {
+  gl::PassScope scope(timer_, "radiance_cache_reach");
+  const uint32_t voxels = volume_.word_count() * 32;
+  want(reach_, reach_texels_, GL_R32UI, int64_t(voxels) * 4);
+  programs_.get(find_reach_program()).use();
   bind_volume();
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
-  gl::dispatch(cells, GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  seeds_texels_.bind(0);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, reach_.id());
+  glUniform1ui(0, voxels);
+  gl::dispatch(voxels, GL_TEXTURE_FETCH_BARRIER_BIT);
+  reached_ = true;
 }
 
 void RadianceCache::list_cells() {
@@ -212,13 +234,14 @@ void RadianceCache::march() {
   const uint32_t rays = active_ * uint32_t(settings_.directions);
   want(met_, met_texels_, GL_R32UI, std::max(int64_t(rays), int64_t(1)) * 4);
   if (rays == 0) return;
-  programs_.get(march_program(settings_.march_steps)).use();
+  programs_.get(march_program(settings_.march_steps, settings_.walls)).use();
   bind_volume();
   glUniform3ui(0, active_, unsigned(settings_.directions), seed_);
   bind_lattice(1);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, met_.id());
   seeds_texels_.bind(0);
+  if (settings_.walls) reach_texels_.bind(1);
   gl::dispatch(rays, GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
@@ -242,6 +265,7 @@ void RadianceCache::add_lamps(const Lamps& lamps) {
   glUniform1ui(2, lamps.first);
   glUniform1ui(3, lamps.count);
   glUniform3f(4, offset.x, offset.y, offset.z);
+  glUniform1f(5, float(voxel()));
   gl::dispatch(volume_.solid(), GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -283,6 +307,7 @@ void RadianceCache::bounce(bool cache) {
   bind_volume();
   if (cache) {
     cells_texels_.bind(options.unit);
+    if (options.walls) reach_texels_.bind(options.unit + 3);
     glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), list_block_.id());
   }
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, radiosity_.id());
@@ -317,13 +342,14 @@ void RadianceCache::write_block(gl::Buffer& block, const glm::dvec3& origin) con
 }
 
 LookUpOptions RadianceCache::look_up(int unit, int block) const {
-  return {settings_.encoding, split_, scaled_, unit, block};
+  return {settings_.encoding, split_, scaled_, unit, block, settings_.walls};
 }
 
 void RadianceCache::bind(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
                          const glm::dvec3& origin) {
   write_block(view_block_, origin);
   shown().bind(options.unit);
+  if (options.walls) reach_texels_.bind(options.unit + 3);
   glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
   if (options.scaled) bind_scales(options, gpu, origin);
 }
@@ -351,6 +377,7 @@ void RadianceCache::show(const LookUpOptions& options, const glm::dvec3& origin,
   bind_volume();
   write_block(view_block_, origin);
   shown().bind(options.unit);
+  if (options.walls) reach_texels_.bind(options.unit + 3);
   glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(options.block), view_block_.id());
   seeds_texels_.bind(0);
   const glm::vec3 offset(origin - list_origin_);

@@ -40,6 +40,7 @@ struct LookUpOptions {
   bool scaled = false; // bounced light is multiplied by what the artist says; with `split`
   int unit = 0;        // texture unit of the cells
   int block = 0;       // binding of the uniform block; the scales' is the next
+  bool walls = true;   // Settings::walls
   void add_defines(gl::ProgramSource& source) const;
 };
 
@@ -125,6 +126,7 @@ class RadianceCache {
   const gl::Texture& shown() const { return blended_ ? history_.texels() : cells_texels_; }
   void remember(float share);
   void find_seeds();
+  void find_reach();
   void list_cells();
   void march();
   void bounce(bool cache);
@@ -146,11 +148,12 @@ class RadianceCache {
   bool whole_ = false;  // the last of them holds the scene
   glm::dvec3 list_origin_{0};
   GeometryVolume volume_;
-  gl::Buffer list_, seeds_, met_, radiosity_, direct_, cells_;
-  gl::Texture seeds_texels_, met_texels_, radiosity_texels_, cells_texels_;
+  gl::Buffer list_, seeds_, reach_, met_, radiosity_, direct_, cells_;
+  gl::Texture seeds_texels_, reach_texels_, met_texels_, radiosity_texels_, cells_texels_;
   gl::Buffer list_block_, view_block_, scales_block_;  // CacheVolumes about the list's origin, and about the camera
   Occupancy occupancy_ = Occupancy::kGeometry;  // never kAuto
   bool transmission_ = false;
+  bool reached_ = false;  // reach_ is that of the volume
   uint32_t active_ = 0;
 
   CellHistory history_;
@@ -164,9 +167,10 @@ class RadianceCache {
 };
 
 gl::ProgramSource find_seeds_program();
+gl::ProgramSource find_reach_program();
 gl::ProgramSource mark_seen_program();
 gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate);
-gl::ProgramSource march_program(int steps);
+gl::ProgramSource march_program(int steps, bool walls);
 struct GatherOptions {
   Encoding encoding = Encoding::kY3Co1Cg1;
   bool split = false, world = false, bounced = false;

@@ -48,6 +48,9 @@ struct Settings {
   // Neighbours of occupied cells hold light too. Without, surfaces with their own cell behind them
   // have none to look at.
   bool dilate = true;
+  // Light does not pass walls that are thinner than a cell: cells count for what their seeds see. False
+  // as the thesis has it, whose cells light both sides.
+  bool walls = true;
 
   // Of reflective shadow maps.
   int rsm_samples = 200;     // a lamp and cell, 1 .. 4096

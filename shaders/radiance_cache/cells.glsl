@@ -3,7 +3,7 @@
 // A cell has a seed: that empty voxel of it which is closest to its middle. A wall may run through a
 // cell, and light on its two sides has nothing to do with each other: the cell belongs to the side on
 // which its seed lies, its rays begin where the seed sees them, and look-ups leave it out for surfaces
-// that have it behind them.
+// that have it behind them, or where its seed does not see what is before the surface (reach.glsl).
 #include "radiance_cache/volume_shared.h"
 
 struct Cell {

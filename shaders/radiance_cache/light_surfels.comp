@@ -1,5 +1,9 @@
 // Light of one batch of lamps, through their shadow maps, on both sides of surfels. Adds to what
 // earlier batches left. One invocation a surfel.
+//
+// A voxel may hold both faces of a thin wall, or what lies on a floor: rays that meet it come from before
+// all that is in it. So a surfel's shadow is that of a place before its voxel, or the other face's would
+// lie on its back.
 #include "base/invocation.glsl"
 #include "radiance_cache/volume.glsl"
 #include "rasterize/lamp_light.glsl"
@@ -10,6 +14,7 @@ layout(location = 0) uniform uint count;
 layout(location = 2) uniform uint first_light;
 layout(location = 3) uniform uint light_count;
 layout(location = 4) uniform vec3 offset;  // from positions of surfels to those of lamps
+layout(location = 5) uniform float before; // how far before a surface its shadow is looked up, m
 
 void main() {
   uint number = invocation();
@@ -25,7 +30,7 @@ void main() {
     irradiance *= abs(cosine);
 #if SHADOWS
     vec3 lit = cosine > 0.0 ? normal : -normal;
-    Receiver receiver = Receiver(position, lit, lit, 0.0, unit_float(hash(number)));
+    Receiver receiver = Receiver(position + lit * before, lit, lit, 0.0, unit_float(hash(number)));
     if (light.shadow != NO_SHADOW) irradiance *= shadow(light, receiver, to_light);
 #endif
     front += cosine > 0.0 ? irradiance : vec3(0.0);

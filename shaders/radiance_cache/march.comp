@@ -3,6 +3,7 @@
 #include "radiance_cache/cells.glsl"
 #include "radiance_cache/march.glsl"
 #include "radiance_cache/rays.glsl"
+#include "radiance_cache/reach.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer List { uint active_cells[]; };
@@ -11,21 +12,14 @@ layout(location = 0) uniform uvec3 counts;     // cells of the list, directions,
 layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];  // xyz: of each volume's first cell
 
 layout(binding = 0) uniform usamplerBuffer seeds;
+#if WALLS
+layout(binding = 1) uniform usamplerBuffer reach;  // of voxels by number
+#endif
 
-// Rays begin anywhere in the cell that its seed sees, if so many tries find such a place; else in the
-// seed's own voxel. So light on the two sides of a wall is not mixed.
+// Rays begin anywhere in the cell that its seed sees (or, without WALLS, anywhere that is empty), if so
+// many tries find such a place; else in the seed's own voxel. So light on the two sides of a wall is not
+// mixed.
 const int TRIES = 8;
-
-// Whether no solid voxel lies between two points, in voxels of the volume, at most a cell apart.
-bool sees(CacheVolume volume, vec3 from, vec3 to) {
-  vec3 way = to - from;
-  float reach = max(abs(way.x), max(abs(way.y), abs(way.z)));
-  int steps = int(ceil(2.0 * reach));
-  bool open = true;
-  for (int i = 1; i <= steps && open; ++i)
-    open = !voxel_is_solid(volume, ivec3(from + way * (float(i) / float(steps))));
-  return open;
-}
 
 void main() {
   uint ray = spread_invocation(64u);
@@ -39,16 +33,23 @@ void main() {
 
   uint random = hash(k + hash(floatBitsToUint(turn)));
   int side = volume.cells.w;
-  vec3 seed = vec3(cell.at * side) + vec3(seed_voxel(texelFetch(seeds, int(active_cells[slot])).x & SEED_CODE)) + 0.5;
+  ivec3 first = cell.at * side, seed = seed_voxel(texelFetch(seeds, int(active_cells[slot])).x & SEED_CODE);
   bool seen = false;
-  vec3 start = seed, u;
+  vec3 start = vec3(first + seed), u;
   for (int i = 0; i <= TRIES && !seen; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       random = hash(random);
       u[axis] = unit_float(random);
     }
-    start = i < TRIES ? (vec3(cell.at) + u) * float(side) : seed + u - 0.5;
-    seen = sees(volume, seed, start);
+    vec3 within = i < TRIES ? u * float(side) : vec3(seed) + u;
+    ivec3 voxel = first + min(ivec3(within), side - 1);
+    start = vec3(first) + within;
+#if WALLS
+    int number = word_of(volume, voxel) * 32 + (voxel.x & 31);
+    seen = (texelFetch(reach, number).x & reach_bit(ivec3(0))) != 0u;
+#else
+    seen = !voxel_is_solid(volume, voxel);
+#endif
   }
   March m = march(volume.low.xyz + start * voxel_size(volume), direction, cell.volume,
                   unit_float(hash(random)));

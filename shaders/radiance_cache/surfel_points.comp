@@ -45,13 +45,9 @@ void main() {
   uint number = invocation();
   if (number >= count) return;
   uint index = listed[number], primitive = winners[number];
-  int word = int(index >> 5), of_volume = 0;
-  for (int i = 1; i < cache.count.x; ++i)
-    if (word >= cache.volumes[i].first.y) of_volume = i;
+  int of_volume = volume_of_word(int(index >> 5));
   CacheVolume volume = cache.volumes[of_volume];
-  int row = (word - volume.first.y) / volume.first.x, rows = volume.cells.y * volume.cells.w;
-  ivec3 voxel = ivec3((word - volume.first.y - row * volume.first.x) * 32 + int(index & 31u), row % rows,
-                      row / rows);
+  ivec3 voxel = voxel_of_word(volume, int(index >> 5)) + ivec3(index & 31u, 0, 0);
   int texel = int(primitive) * 3;
   vec4 t0 = texelFetch(triangles, texel);
   vec3 e1 = texelFetch(triangles, texel + 1).xyz - t0.xyz;

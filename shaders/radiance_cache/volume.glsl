@@ -29,6 +29,19 @@ int word_of(CacheVolume volume, ivec3 voxel) {
          (voxel.z * volume.cells.y * volume.cells.w + voxel.y) * volume.first.x + (voxel.x >> 5);
 }
 
+// The volume that a word is of, and the first of its voxels.
+int volume_of_word(int word) {
+  int found = 0;
+  for (int v = 1; v < cache.count.x; ++v)
+    if (word >= cache.volumes[v].first.y) found = v;
+  return found;
+}
+
+ivec3 voxel_of_word(CacheVolume volume, int word) {
+  int place = word - volume.first.y, row = place / volume.first.x, rows = volume.cells.y * volume.cells.w;
+  return ivec3((place - row * volume.first.x) * 32, row % rows, row / rows);
+}
+
 bool voxel_is_solid(CacheVolume volume, ivec3 voxel) {
   return (texelFetch(volume_words, word_of(volume, voxel)).x >> uint(voxel.x & 31) & 1u) != 0u;
 }

@@ -285,12 +285,14 @@ class Shaders : public ::testing::Test {
             add(radiance_cache::gather_program({cache.encoding, split, world, bounced}));
       }
     add(radiance_cache::bounce_program({}, true, false));
+    add(radiance_cache::bounce_program({.walls = false}, true, true));
     add(radiance_cache::find_seeds_program());
+    add(radiance_cache::find_reach_program());
     for (bool either : {false, true}) {
       for (auto occupancy : {radiance_cache::Occupancy::kGeometry, radiance_cache::Occupancy::kDepth,
                              radiance_cache::Occupancy::kAll})
         add(radiance_cache::list_cells_program(occupancy, either));
-      add(radiance_cache::march_program(either ? 12 : 0));
+      add(radiance_cache::march_program(either ? 12 : 0, either));
       add(radiance_cache::light_surfels_program(either));
     }
     for (int bits = 0; bits < 256; ++bits) {
