@@ -1,6 +1,7 @@
 #include "radiance_cache/bindings.h"
 #include "rasterize/g_buffer.h"
 #include "radiance_cache/radiance_cache.h"
+#include "radiance_cache/reflective_maps.h"
 
 #include <fmt/format.h>
 
@@ -100,6 +101,7 @@ gl::ProgramSource gather_program(const GatherOptions& options) {
   source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(options.split)));
   source.defines.push_back(fmt::format("WORLD {}", int(options.world)));
   source.defines.push_back(fmt::format("BOUNCED {}", int(options.bounced)));
+  source.defines.push_back(fmt::format("REFLECTED {}", int(options.reflected)));
   return source;
 }
 
@@ -135,6 +137,22 @@ gl::ProgramSource picture_program(Picture picture, const LookUpOptions& options,
 gl::ProgramSource light_surfels_program(bool shadows) {
   gl::ProgramSource source = compute("lamps on surfels", "radiance_cache/light_surfels.comp");
   source.defines = {fmt::format("SHADOWS {}", int(shadows)), "FILTERED_PENUMBRAE 0"};
+  add_volume(source);
+  return source;
+}
+
+gl::ProgramSource rsm_surfaces_program(const gpu_scene::GpuMaterial& material) {
+  gl::ProgramSource source;
+  source.name = fmt::format("reflective shadow map of material '{}'", material.name);
+  source.stages = {{GL_COMPUTE_SHADER, "radiance_cache/rsm_surfaces.comp"}};
+  source.defines = {"SHADOWS 0"};
+  gpu_scene::GpuScene::add_material(material, source);
+  return source;
+}
+
+gl::ProgramSource rsm_gather_program(bool mixed, int march_steps) {
+  gl::ProgramSource source = compute("samples of reflective shadow maps", "radiance_cache/rsm_gather.comp");
+  source.defines = {fmt::format("MIXED {}", int(mixed)), fmt::format("MARCH_STEPS {}", march_steps)};
   add_volume(source);
   return source;
 }

@@ -2,6 +2,7 @@
 #include "base/invocation.glsl"
 #include "radiance_cache/cells.glsl"
 #include "radiance_cache/march.glsl"
+#include "radiance_cache/cell_places.glsl"
 #include "radiance_cache/rays.glsl"
 
 layout(local_size_x = 64) in;
@@ -11,21 +12,6 @@ layout(location = 0) uniform uvec3 counts;     // cells of the list, directions,
 layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];  // xyz: of each volume's first cell
 
 layout(binding = 0) uniform usamplerBuffer seeds;
-
-// Rays begin anywhere in the cell that its seed sees, if so many tries find such a place; else in the
-// seed's own voxel. So light on the two sides of a wall is not mixed.
-const int TRIES = 8;
-
-// Whether no solid voxel lies between two points, in voxels of the volume, at most a cell apart.
-bool sees(CacheVolume volume, vec3 from, vec3 to) {
-  vec3 way = to - from;
-  float reach = max(abs(way.x), max(abs(way.y), abs(way.z)));
-  int steps = int(ceil(2.0 * reach));
-  bool open = true;
-  for (int i = 1; i <= steps && open; ++i)
-    open = !voxel_is_solid(volume, ivec3(from + way * (float(i) / float(steps))));
-  return open;
-}
 
 void main() {
   uint ray = spread_invocation(64u);
@@ -38,20 +24,11 @@ void main() {
   vec3 direction = cache_direction(k, counts.y, turn);
 
   uint random = hash(k + hash(floatBitsToUint(turn)));
-  int side = volume.cells.w;
-  vec3 seed = vec3(cell.at * side) + vec3(seed_voxel(texelFetch(seeds, int(active_cells[slot])).x & SEED_CODE)) + 0.5;
-  bool seen = false;
-  vec3 start = seed, u;
-  for (int i = 0; i <= TRIES && !seen; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      random = hash(random);
-      u[axis] = unit_float(random);
-    }
-    start = i < TRIES ? (vec3(cell.at) + u) * float(side) : seed + u - 0.5;
-    seen = sees(volume, seed, start);
-  }
+  vec3 seed = seed_in_volume(volume, cell.at, texelFetch(seeds, int(active_cells[slot])).x);
+  vec3 u = random_point(random);
+  vec3 start = place_in_cell(volume, cell.at, seed, u, random);
   March m = march(volume.low.xyz + start * voxel_size(volume), direction, cell.volume,
-                  unit_float(hash(random)));
+                  unit_float(hash(random)), MARCH_ALL);
   uint result = RAY_MISS;
   if (m.hit) {
     uint surfel = surfel_of(cache.volumes[m.volume], m.voxel);
