@@ -75,6 +75,10 @@ class PANOPTES_PT_indirect_gathering(_IndirectSubPanel, bpy.types.Panel):
         settings = context.scene.panoptes.radiance_cache
         column = self._column()
         column.active = settings.enabled
+        column.prop(settings, 'first_bounce')
+        if settings.first_bounce == 'RSM':
+            for name in ('rsm_samples', 'rsm_resolution', 'rsm_spread', 'rsm_mixed'):
+                column.prop(settings, name)
         column.prop(settings, 'directions')
         column.prop(settings, 'march_steps')
         column.prop(settings, 'blend')

@@ -99,7 +99,8 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
             ('SURFACES', 'Surfaces', 'On the surfaces that rays from a cell meet. Smoother for the time, and right '
                                      'behind corners'),
             ('RSM', 'Reflective Shadow Maps', "On random pixels of the lamps' shadow maps, as in the dissertation. "
-                                              'Needs many samples, for comparison'),
+                                              'As bright, but blotchy below 1000 samples, and slower for each '
+                                              'lamp; for comparison'),
         ),
         default='SURFACES')
     directions: IntProperty(
@@ -147,8 +148,9 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
         default=128, min=16, max=1024, subtype='PIXEL')
     rsm_spread: FloatProperty(
         name='Spread',
-        description='Part of a map from which a cell takes its samples, around where it is seen itself. 1 is all of it',
-        default=0.8, min=0.01, max=1.0, subtype='FACTOR')
+        description='Part of a map from which a cell takes its samples, around where it is seen itself. 1 is all of '
+                    'it, 0.8 what the dissertation shows; less is smoother if the whole map counts, too',
+        default=0.25, min=0.01, max=1.0, subtype='FACTOR')
     rsm_mixed: BoolProperty(
         name='Whole Map Too',
         description='Take half of the samples from all of the map. Without it the light outside the spread is lost, '

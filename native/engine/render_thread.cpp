@@ -262,13 +262,7 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   stats.width = request.camera.width;
   stats.height = request.camera.height;
   stats.samples = done;
-  if (!debug && !paths) {
-    realtime_.amend(plan);
-    if (plan::runs(plan, "cache_first_bounce") &&
-        request.cache.first_bounce == radiance_cache::FirstBounce::kRsm)
-      warnings.push_back("reflective shadow maps are not part of this version: lit points of surfaces "
-                         "take their place");
-  }
+  if (!debug && !paths) realtime_.amend(plan);
   stats.effects = report(plan, times);
   for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
   stats.build_ms = build_ms;

@@ -58,6 +58,7 @@ radiance_cache::Settings cache_settings(const py::dict& dict) {
   members.read("occupancy", s.occupancy, rc::kOccupancyNames);
   members.read("depth_stride", s.depth_stride);
   members.read("dilate", s.dilate);
+  members.read("walls", s.walls);
   members.read("rsm_samples", s.rsm_samples);
   members.read("rsm_resolution", s.rsm_resolution);
   members.read("rsm_spread", s.rsm_spread);

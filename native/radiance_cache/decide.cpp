@@ -28,13 +28,18 @@ plan::Effects decide(const scene::Facts& facts, const Settings& s) {
                                         : "nothing shines",
                            surfaces && (!s.enabled || (lamps && !bounced && !facts.world))));
   const char* idle = "there is no radiance cache";
-  const bool first = runs && lamps && bounced;
-  effects.push_back(effect("cache_first_bounce", first,
-                           first    ? "lamps light surfaces that others see"
-                           : !runs  ? idle
-                           : !lamps ? "no lamp shines"
-                                    : "no bounces are allowed",
-                           !first));
+  const bool first = runs && lamps && bounced, maps = s.first_bounce == FirstBounce::kRsm;
+  const char* none = !runs ? idle : !lamps ? "no lamp shines" : "no bounces are allowed";
+  effects.push_back(effect("cache_first_bounce", first && !maps,
+                           !first ? none
+                           : maps ? "reflective shadow maps take its place"
+                                  : "lamps light surfaces that others see",
+                           !first || maps));
+  effects.push_back(effect("cache_rsm", first && maps,
+                           !first ? none
+                           : maps ? "surfaces that lamps see send light to the cells"
+                                  : "points of surfaces that rays meet are lit instead",
+                           !first || !maps));
   const bool world = runs && facts.world;
   effects.push_back(effect("cache_world", world,
                            world   ? "the world shines in from where rays leave the scene"

@@ -1,6 +1,7 @@
 #include "radiance_cache/bindings.h"
 #include "rasterize/g_buffer.h"
 #include "radiance_cache/radiance_cache.h"
+#include "radiance_cache/reflective_maps.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +46,12 @@ void add_volume(gl::ProgramSource& source) {
   source.defines.push_back(fmt::format("VOLUMES_BLOCK {}", kVolumesBlock));
   source.defines.push_back(fmt::format("VOLUME_WORDS_UNIT {}", kWordsUnit));
   source.defines.push_back(fmt::format("VOLUME_SURFELS_UNIT {}", kSurfelsUnit));
+}
+
+// Where in cells light is received (cell_places.glsl).
+void add_places(gl::ProgramSource& source, bool walls) {
+  source.defines.push_back(fmt::format("WALLS {}", int(walls)));
+  source.defines.push_back(fmt::format("REACH_UNIT {}", kReachUnit));
 }
 
 }  // namespace
@@ -96,7 +103,8 @@ gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate) {
 
 gl::ProgramSource march_program(int steps, bool walls) {
   gl::ProgramSource source = compute("rays of cells", "radiance_cache/march.comp");
-  source.defines = {fmt::format("MARCH_STEPS {}", steps), fmt::format("WALLS {}", int(walls))};
+  source.defines = {fmt::format("MARCH_STEPS {}", steps)};
+  add_places(source, walls);
   add_volume(source);
   return source;
 }
@@ -108,6 +116,7 @@ gl::ProgramSource gather_program(const GatherOptions& options) {
   source.defines.push_back(fmt::format("CACHE_SPLIT {}", int(options.split)));
   source.defines.push_back(fmt::format("WORLD {}", int(options.world)));
   source.defines.push_back(fmt::format("BOUNCED {}", int(options.bounced)));
+  source.defines.push_back(fmt::format("REFLECTED {}", int(options.reflected)));
   return source;
 }
 
@@ -143,6 +152,23 @@ gl::ProgramSource picture_program(Picture picture, const LookUpOptions& options,
 gl::ProgramSource light_surfels_program(bool shadows) {
   gl::ProgramSource source = compute("lamps on surfels", "radiance_cache/light_surfels.comp");
   source.defines = {fmt::format("SHADOWS {}", int(shadows)), "FILTERED_PENUMBRAE 0"};
+  add_volume(source);
+  return source;
+}
+
+gl::ProgramSource rsm_surfaces_program(const gpu_scene::GpuMaterial& material) {
+  gl::ProgramSource source;
+  source.name = fmt::format("reflective shadow map of material '{}'", material.name);
+  source.stages = {{GL_COMPUTE_SHADER, "radiance_cache/rsm_surfaces.comp"}};
+  source.defines = {"SHADOWS 0"};
+  gpu_scene::GpuScene::add_material(material, source);
+  return source;
+}
+
+gl::ProgramSource rsm_gather_program(bool mixed, int march_steps, bool walls) {
+  gl::ProgramSource source = compute("samples of reflective shadow maps", "radiance_cache/rsm_gather.comp");
+  source.defines = {fmt::format("MIXED {}", int(mixed)), fmt::format("MARCH_STEPS {}", march_steps)};
+  add_places(source, walls);
   add_volume(source);
   return source;
 }

@@ -55,6 +55,8 @@ void RadianceCache::begin(const Frame& frame) {
   world_ = &frame.world;
   world_light_ = plan::runs(frame.plan, "cache_world");
   lamps_ = plan::runs(frame.plan, "cache_first_bounce");
+  rsm_ = plan::runs(frame.plan, "cache_rsm");
+  if (!rsm_) reflective_.release();
   bounces_ = settings_.bounces;
   scaled_ = bounces_ > 0 && scales(frame);
   split_ = world_light_ && bounces_ > 0 &&
@@ -126,6 +128,7 @@ void RadianceCache::release() {
   runs_ = lit_ = kept_ = blended_ = stale_ = false;
   lag_ = 0;
   history_.release();
+  reflective_.release();
   grids_.clear();
   volume_.release();
   for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_, &reach_texels_}) *texture = gl::Texture();
@@ -241,7 +244,7 @@ void RadianceCache::march() {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, met_.id());
   seeds_texels_.bind(0);
-  if (settings_.walls) reach_texels_.bind(1);
+  if (settings_.walls) reach_texels_.bind(kReachUnit);
   gl::dispatch(rays, GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
@@ -269,6 +272,20 @@ void RadianceCache::add_lamps(const Lamps& lamps) {
   gl::dispatch(volume_.solid(), GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+void RadianceCache::reflect_lamps(const ReflectiveMaps::Lamps& lamps) {
+  uint32_t longest = 0;  // a ray passes each plane between voxels once
+  for (const Grid& grid : grids_)
+    longest += uint32_t((grid.cells.x + grid.cells.y + grid.cells.z) * grid.voxels);
+  const auto bind = [this] {
+    bind_volume();
+    bind_lattice(1);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
+    seeds_texels_.bind(0);
+    if (settings_.walls) reach_texels_.bind(kReachUnit);
+  };
+  reflective_.update(lamps, {active_, list_origin_, longest, seed_, bind}, settings_);
+}
+
 void RadianceCache::gather() {
   blended_ = false;
   if (kept_) {
@@ -278,12 +295,12 @@ void RadianceCache::gather() {
   cells_.clear();  // cells that are not listed hold no light
   lit_ = true;
   if (active_ == 0) return;
-  if (world_light_) gather_rays(false);
+  if (world_light_) gather_rays(false, false);
   for (int i = 0; i < bounces_; ++i) {
-    const bool cache = world_light_ || i > 0;
-    if (!cache && !lamps_) break;
-    bounce(cache);
-    gather_rays(true);
+    const bool cache = world_light_ || i > 0, surfels = cache || lamps_;
+    if (!surfels && !rsm_) break;
+    if (surfels) bounce(cache);
+    gather_rays(surfels, rsm_);
   }
   remember(settings_.blend);
   blended_ = follows_ && settings_.blend > 0;
@@ -316,13 +333,14 @@ void RadianceCache::bounce(bool cache) {
   gl::dispatch(sides, GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-void RadianceCache::gather_rays(bool bounced) {
+void RadianceCache::gather_rays(bool bounced, bool reflected) {
   gl::PassScope scope(timer_, "radiance_cache_gather");
-  programs_.get(gather_program({settings_.encoding, split_, world_light_, bounced})).use();
+  programs_.get(gather_program({settings_.encoding, split_, world_light_, bounced, reflected})).use();
   met_texels_.bind(0);
   if (bounced) radiosity_texels_.bind(1);
   if (world_light_) world_->map(settings_.directions).bind(2);
   seeds_texels_.bind(3);
+  if (reflected) reflective_.light().bind(6);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, cells_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, kCellsBlock, list_block_.id());

@@ -19,6 +19,7 @@
 #include "plan/effect.h"
 #include "radiance_cache/geometry_volume.h"
 #include "radiance_cache/history.h"
+#include "radiance_cache/reflective_maps.h"
 #include "radiance_cache/settings.h"
 #include "radiance_cache/world_light.h"
 #include "rasterize/g_buffer.h"
@@ -50,7 +51,7 @@ int cell_texels(Encoding encoding);
 class RadianceCache {
  public:
   RadianceCache(gl::ProgramCache& programs, gl::PassTimer& timer)
-      : programs_(programs), timer_(timer), history_(programs, timer) {}
+      : programs_(programs), timer_(timer), history_(programs, timer), reflective_(programs, timer) {}
 
   struct Frame {
     const gpu_scene::Camera& camera;
@@ -88,6 +89,10 @@ class RadianceCache {
   void see(const rasterize::GBuffer& g_buffer, const glm::dvec3& origin);
   void begin_lamps();
   void add_lamps(const Lamps& lamps);
+  // Whether light of the first bounce comes from reflective shadow maps instead: then reflect_lamps(),
+  // before gather().
+  bool reflective() const { return runs_ && rsm_ && !kept_; }
+  void reflect_lamps(const ReflectiveMaps::Lamps& lamps);
   // Makes the cells' light.
   void gather();
   // From here on look-ups find the light of this frame alone.
@@ -130,7 +135,7 @@ class RadianceCache {
   void list_cells();
   void march();
   void bounce(bool cache);
-  void gather_rays(bool bounced);
+  void gather_rays(bool bounced, bool reflected);
   void bind_scales(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
                    const glm::dvec3& origin);
   void write_block(gl::Buffer& block, const glm::dvec3& origin) const;
@@ -139,7 +144,8 @@ class RadianceCache {
 
   gl::ProgramCache& programs_;
   gl::PassTimer& timer_;
-  bool runs_ = false, split_ = false, scaled_ = false, world_light_ = false, lamps_ = false;
+  bool runs_ = false, split_ = false, scaled_ = false, world_light_ = false, lamps_ = false,
+       rsm_ = false;
   int bounces_ = 0;
   Settings settings_;
   uint32_t seed_ = 0;
@@ -155,6 +161,7 @@ class RadianceCache {
   bool transmission_ = false;
   bool reached_ = false;  // reach_ is that of the volume
   uint32_t active_ = 0;
+  ReflectiveMaps reflective_;
 
   CellHistory history_;
   State state_;
@@ -174,6 +181,7 @@ gl::ProgramSource march_program(int steps, bool walls);
 struct GatherOptions {
   Encoding encoding = Encoding::kY3Co1Cg1;
   bool split = false, world = false, bounced = false;
+  bool reflected = false;  // by what reflective shadow maps show
 };
 gl::ProgramSource gather_program(const GatherOptions& options);
 gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache);

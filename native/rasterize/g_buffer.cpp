@@ -80,7 +80,6 @@ void GBuffer::resize(int width, int height, const GBufferOptions& options) {
   if (options.emission) emission_ = image(GL_RGBA32F);
   if (options.transmission) transmission_ = image(GL_RGBA32UI);
   if (options.layers) layers_ = image(GL_RGBA32UI);
-  pixels_ = gl::Buffer(int64_t(width) * height * 4);
   options_ = options;
 }
 
@@ -99,6 +98,11 @@ void GBuffer::resize_visibility(int width, int height) {
 void GBuffer::rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
                         gl::PassTimer& timer) {
   gl::PassScope scope(timer, "visibility");
+  draw(gpu_scene::ViewKind::kCamera, scene, programs);
+}
+
+void GBuffer::draw(gpu_scene::ViewKind kind, const gpu_scene::GpuScene& scene,
+                   gl::ProgramCache& programs) {
   records_ = &scene.records();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glViewport(0, 0, width_, height_);
@@ -110,7 +114,7 @@ void GBuffer::rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& prog
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_TRUE);
   if (!scene.empty())
-    scene.draw(gpu_scene::ViewKind::kCamera, [&](const gpu_scene::GpuMaterial* material) {
+    scene.draw(kind, [&](const gpu_scene::GpuMaterial* material) {
       programs.get(raster_program(material, {.depth_only = false})).use();
       if (material) scene.bind_shading(*material);
     });
@@ -150,6 +154,7 @@ void GBuffer::sort_pixels(const gpu_scene::GpuScene& scene, gl::ProgramCache& pr
   const int64_t bytes = int64_t(material_count_ + 2) * kBinBytes;
   if (bins_.bytes() < bytes) bins_ = gl::Buffer(bytes);
   bins_.clear();
+  pixels_.reserve(int64_t(width_) * height_ * 4);
   const auto pass = [&](const char* name, int x, int y) {
     programs.get(bin_program(name)).use();
     bind_bins();

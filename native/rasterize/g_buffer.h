@@ -42,12 +42,17 @@ class GBuffer {
  public:
   // (Re)allocates when the size or the options differ from the last call's.
   void resize(int width, int height, const GBufferOptions& options);
-  // The same for rasterize() alone: without room for surfaces.
+  // The same without room for surfaces: what is found and sorted is all.
   void resize_visibility(int width, int height);
 
   // Finds the triangle and the depth of each pixel for the view that is set in the ViewBlock.
   void rasterize(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs,
                  gl::PassTimer& timer);
+  // The same for views of lamps too; the caller times it.
+  void draw(gpu_scene::ViewKind kind, const gpu_scene::GpuScene& scene, gl::ProgramCache& programs);
+  // Sorts what was found by material, for programs that include rasterize/bins.glsl. shade() does so
+  // itself.
+  void sort_pixels(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs);
   // Evaluates the materials of what rasterize() found.
   void shade(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs, gl::PassTimer& timer);
 
@@ -57,9 +62,11 @@ class GBuffer {
   void bind_surfaces() const;
   void bind_visibility() const;
 
-  // Runs the program in use over all pixels that show a surface, or over those that show none.
+  // Runs the program in use over all pixels that show a surface, over those that show none, or over
+  // those of one material.
   void dispatch_surfaces() const;
   void dispatch_background() const;
+  void dispatch_material(uint32_t material) const { dispatch_bin(material); }
 
   const gl::Texture& emission() const { return emission_; }
   const gl::Texture& depth() const { return depth_; }  // reversed: 0 where no surface is
@@ -67,7 +74,6 @@ class GBuffer {
   int height() const { return height_; }
 
  private:
-  void sort_pixels(const gpu_scene::GpuScene& scene, gl::ProgramCache& programs);
   void dispatch_bin(uint32_t bin) const;
 
   int width_ = 0, height_ = 0;

@@ -219,7 +219,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
     add_lamps(index, view, gpu, lights_cache, cancelled);
   else
     find_occlusion(index, view, nullptr, gpu, cancelled);
-  if (lights_cache) cache_.gather();
+  if (lights_cache) gather_cache(view, gpu, cancelled);
   if (index > first) cache_.settle();
   stop_if(cancelled);
 
@@ -264,7 +264,8 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
   stop_if(cancelled);
   if (cascades_) find_cascades(view);
   if (!undecided() && !cache_.runs()) return;
-  const rasterize::LightSet set = lamps_ ? place(0, view, gpu) : rasterize::LightSet{};
+  const rasterize::LightSet set =
+      lamps_ ? place(0, view, gpu, lights_, placement_of_lamps()) : rasterize::LightSet{};
   store_lights(set);
   shadow_revision_ = -1;  // these maps are of another sample than the next
   cache_.see(g_buffer_, glm::dvec3(glm::vec3(view.world_origin)));
@@ -277,7 +278,7 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
     if (!cache_.runs()) return;
     light_cache(batch, view);
   }
-  cache_.gather();
+  gather_cache(view, gpu, cancelled);
 }
 
 bool Realtime::undecided() const {
@@ -299,6 +300,26 @@ void Realtime::light_cache(const rasterize::LightBatch& batch, const shared::Vie
                     .lights = lights_buffer_,
                     .faces = faces_buffer_,
                     .bind_maps = [this](int unit) { shadow_maps_.bind(unit); }});
+}
+
+void Realtime::gather_cache(const shared::View& view, const gpu_scene::GpuScene& gpu,
+                            const std::atomic<bool>& cancelled) {
+  if (cache_.reflective()) {
+    rasterize::Placement placement = placement_of_lamps();
+    placement.shadows = true;  // since maps are drawn by the views of shadow maps
+    placement.sun_cascades.clear();
+    placement.resolution = settings_.cache.rsm_resolution;
+    std::vector<scene::Light> lamps = lights_;
+    for (scene::Light& lamp : lamps) lamp.cast_shadow = true;
+    cache_.reflect_lamps({.set = place(0, view, gpu, lamps, placement),
+                          .origin = placement.camera_origin,
+                          .camera = view,
+                          .gpu = gpu,
+                          .view_block = view_block_,
+                          .cancelled = cancelled});
+    view_block_.set(view);
+  }
+  cache_.gather();
 }
 
 ambient_occlusion::AmbientOcclusion::Sample Realtime::occlusion_sample(
@@ -423,7 +444,9 @@ void Realtime::find_cascades(const shared::View& view) {
 }
 
 rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
-                                    const gpu_scene::GpuScene& gpu) {
+                                    const gpu_scene::GpuScene& gpu,
+                                    const std::vector<scene::Light>& lamps,
+                                    const rasterize::Placement& placement) {
   std::vector<rasterize::LightSamplePoint> points;
   if (soft_)
     for (size_t i = 0; i < lights_.size(); ++i) {
@@ -438,14 +461,16 @@ rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
     mesh_lights = emitters_.sample(index, {gpu, programs_, view_block_, view});
     view_block_.set(view);
   }
-  return rasterize::place_lights(
-      lights_, points, mesh_lights,
-      {.shadows = shadows_,
-       .bounds = bounds_,
-       .sun_cascades = cascades_ ? sun_cascades_ : std::vector<scene::Bounds>{},
-       .camera_origin = glm::inverse(camera_.world_to_camera)[3],
-       .resolution = settings_.shadows.resolution,
-       .layers = rasterize::ShadowMaps::layer_limit(settings_.shadows, device_)});
+  return rasterize::place_lights(lamps, points, mesh_lights, placement);
+}
+
+rasterize::Placement Realtime::placement_of_lamps() const {
+  return {.shadows = shadows_,
+          .bounds = bounds_,
+          .sun_cascades = cascades_ ? sun_cascades_ : std::vector<scene::Bounds>{},
+          .camera_origin = glm::inverse(camera_.world_to_camera)[3],
+          .resolution = settings_.shadows.resolution,
+          .layers = rasterize::ShadowMaps::layer_limit(settings_.shadows, device_)};
 }
 
 void Realtime::store_lights(const rasterize::LightSet& set) {
@@ -458,7 +483,7 @@ void Realtime::store_lights(const rasterize::LightSet& set) {
 void Realtime::add_lamps(uint32_t index, const shared::View& view,
                          const gpu_scene::GpuScene& gpu, bool lights_cache,
                          const std::atomic<bool>& cancelled) {
-  const rasterize::LightSet set = place(index, view, gpu);
+  const rasterize::LightSet set = place(index, view, gpu, lights_, placement_of_lamps());
   store_lights(set);
   clear(diffuse_light_);
   if (surfaces_.glossy) clear(glossy_light_);

@@ -96,8 +96,11 @@ class Realtime {
   glm::dvec2 sample_jitter(uint32_t index) const;
   shared::View sample_view(uint32_t index, uint32_t sharing) const;
   void find_cascades(const shared::View& view);
+  // The scene's lamps, or others in their stead, and glowing surfaces in a sample.
   rasterize::LightSet place(uint32_t index, const shared::View& view,
-                            const gpu_scene::GpuScene& gpu);
+                            const gpu_scene::GpuScene& gpu, const std::vector<scene::Light>& lamps,
+                            const rasterize::Placement& placement);
+  rasterize::Placement placement_of_lamps() const;
   // What only the picture's first sample can tell, where another one is rendered first.
   void look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene& gpu,
                             const std::atomic<bool>& cancelled);
@@ -113,6 +116,9 @@ class Realtime {
   void find_occlusion(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
                       const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
   void light_cache(const rasterize::LightBatch& batch, const shared::View& view);
+  // Once all lamps have lit the cache.
+  void gather_cache(const shared::View& view, const gpu_scene::GpuScene& gpu,
+                    const std::atomic<bool>& cancelled);
   void begin_occlusion();
   bool undecided() const;
   void choose_views(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,

@@ -15,6 +15,9 @@ layout(binding = 0) uniform usamplerBuffer met;         // as march.comp writes 
 layout(binding = 1) uniform usamplerBuffer radiosity;   // of surfels: front, back; as pack_light()
 layout(binding = 2) uniform sampler2D world_radiance;   // latitudes from +Z down, longitudes from +X
 layout(binding = 3) uniform usamplerBuffer seeds;
+#if REFLECTED
+layout(binding = 6) uniform samplerBuffer reflected;    // as rsm_gather.comp writes it
+#endif
 layout(location = 0) uniform uvec3 counts;              // cells of the list, directions, seed
 layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];
 
@@ -55,6 +58,16 @@ void main() {
     world[i] *= share;
     bounced[i] *= share;
   }
+#if REFLECTED
+  for (int i = 0; i < 9; ++i) {
+    vec3 first = texelFetch(reflected, int(slot) * 9 + i).rgb;
+#if CACHE_SPLIT
+    bounced[i] += first;
+#else
+    world[i] += first;
+#endif
+  }
+#endif
   uint first = number * uint(CACHE_PARTS * CELL_TEXELS);
   store(first, world, seed);
 #if CACHE_SPLIT

@@ -1,5 +1,8 @@
-// Rays through the geometry volume, from voxel to voxel.
+// Rays through the geometry volume, from voxel to voxel. A ray begins in volume `v` and meets nothing
+// farther than `reach`, m.
 #include "radiance_cache/volume.glsl"
+
+const float MARCH_ALL = 1.0e30;  // a reach beyond everything
 
 struct March {
   bool hit;
@@ -8,16 +11,16 @@ struct March {
 };
 
 #if MARCH_STEPS
-// As the thesis has it: so many points, spread evenly over the way to the border of the volume and
+// As the thesis has it: so many points, spread evenly over the way (at most to the border of the volume) and
 // moved by `random` (0 to 1) of their distance. Thin things between them are missed.
-March march(vec3 origin, vec3 direction, int v, float random) {
+March march(vec3 origin, vec3 direction, int v, float random, float reach) {
   March m = March(false, v, ivec3(0));
   CacheVolume volume = cache.volumes[v];
   float side = voxel_size(volume);
   vec3 size = vec3(voxel_counts(volume));
   vec3 start = (origin - volume.low.xyz) / side;
   vec3 borders = (mix(vec3(0.0), size, greaterThan(direction, vec3(0.0))) - start) / direction;
-  float end = 1.0e30;
+  float end = reach / side;
   for (int i = 0; i < 3; ++i)
     if (abs(direction[i]) > 1.0e-9) end = min(end, borders[i]);
   for (int i = 0; i < MARCH_STEPS && !m.hit; ++i) {
@@ -30,10 +33,10 @@ March march(vec3 origin, vec3 direction, int v, float random) {
 #else
 // Every voxel that the ray passes, in the finest volume that is there; where it leaves one it goes on
 // in the next.
-March march(vec3 origin, vec3 direction, int v, float random) {
+March march(vec3 origin, vec3 direction, int v, float random, float reach) {
   March m = March(false, v, ivec3(0));
   float t = 0.0;
-  for (; v < cache.count.x; ++v) {
+  for (; v < cache.count.x && t < reach; ++v) {
     CacheVolume volume = cache.volumes[v];
     float side = voxel_size(volume);
     ivec3 size = voxel_counts(volume);
@@ -47,7 +50,7 @@ March march(vec3 origin, vec3 direction, int v, float random) {
     vec3 next = t + (vec3(voxel + (way + 1) / 2) - at) * vec3(way) * pace;
     ivec3 end = mix(ivec3(-1), size, greaterThan(way, ivec3(0)));
     bool inside = true;
-    while (inside) {
+    while (inside && t < reach) {
       if (voxel_is_solid(volume, voxel)) return March(true, v, voxel);
       bvec3 least = bvec3(next.x <= next.y && next.x <= next.z, next.y < next.x && next.y <= next.z,
                           next.z < next.x && next.z < next.y);

@@ -28,7 +28,7 @@ vec3 shown(ivec2 pixel, GBufferPixel g) {
   if (enter > min(end.x, min(end.y, end.z))) return vec3(0.0);
   float share;
   int v = volume_of(origin + direction * enter - offset, share);
-  March m = march(origin + direction * enter, direction, v, 0.5);
+  March m = march(origin + direction * enter, direction, v, 0.5, MARCH_ALL);
   if (!m.hit) return vec3(0.0);
   Surfel surfel = fetch_surfel(surfel_of(cache.volumes[m.volume], m.voxel));
   vec3 normal = unpack_unit(surfel.surface.x);

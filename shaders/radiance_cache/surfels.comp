@@ -1,9 +1,9 @@
 // What the surfaces of solid voxels reflect, of one material; one invocation a voxel. Those that light
 // passes vanish by that chance.
 #include "base/invocation.glsl"
-#include "base/scattering.glsl"
 #include "gpu_scene/material.glsl"
 #include "generated/material.glsl"
+#include "radiance_cache/reflectance.glsl"
 #include "radiance_cache/surfel_color.glsl"
 #include "radiance_cache/volume_shared.h"
 #include "tracing/rays_shared.h"
@@ -34,12 +34,7 @@ Side side_of(Surfel surfel, uint triangle, vec3 normal, vec3 along, float reach)
   evaluate_material(hit, surface);
   finish_surface(hit, surface);
 
-  float cosine = clamp(dot(surface.normal, hit.view), 0.0, 1.0);
-  vec3 color = surface.diffuse * diffuse_albedo(surface.diffuse_roughness, cosine) +
-               environment_reflectance(surface.specular, max(surface.grazing, surface.specular),
-                                       surface.roughness, cosine) +
-               surface.sheen * sheen_albedo(surface.sheen_roughness, cosine) +
-               surface.coat * fresnel_dielectric(cosine, 1.5);
+  vec3 color = reflectance(surface, hit.view);
   float reflecting = 1.0 - clamp(luminance(surface.transmission), 0.0, 1.0);
   Side side;
   side.color = clamp(finite(color / max(reflecting, 1.0e-3)), 0.0, 1.0);

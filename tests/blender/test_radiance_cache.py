@@ -52,7 +52,7 @@ class TestSettings:
             'enabled': True, 'bounces': 2, 'resolution': 0, 'voxels': 4, 'cascades': 0, 'encoding': 'y3co1cg1',
             'luminance': 1.0, 'chrominance': 1.0, 'regions': [], 'first_bounce': 'surfaces', 'directions': 64,
             'march_steps': 0, 'voxel_fill': 0.75, 'occupancy': 'auto', 'depth_stride': 4, 'dilate': True,
-            'rsm_samples': 200, 'rsm_resolution': 128, 'rsm_spread': pytest.approx(0.8), 'rsm_mixed': True,
+            'rsm_samples': 200, 'rsm_resolution': 128, 'rsm_spread': pytest.approx(0.25), 'rsm_mixed': True,
             'blend': pytest.approx(0.8), 'rebuild_every': 1, 'picture': 'none'}
         assert final()['settings']['specular_rays'] == {'mode': 'auto', 'roughness': pytest.approx(0.3)}
 
@@ -190,9 +190,11 @@ class TestPanels:
     def test_real_time(self, ours):
         drawn = sum((draw(panel) for panel in self.RENDER), [])
         assert len(drawn) == len(set(drawn))
-        # Reflective shadow maps are not part of this version.
-        shown = {name for name in names(ours) if not name.startswith('rsm_')} - {'enabled', 'first_bounce'}
-        assert set(drawn) == shown
+        shown = names(ours) - {'enabled'}
+        maps = {name for name in shown if name.startswith('rsm_')}
+        assert set(drawn) == shown - maps
+        ours.first_bounce = 'RSM'
+        assert set(draw(self.RENDER[2])) - set(drawn) == maps
         ours.occupancy = 'ALL'
         assert not {'depth_stride', 'dilate'} & set(draw(self.RENDER[1]))
 
@@ -306,8 +308,9 @@ class TestForReal:
         session.final_sync.sync(session.mirror(), bpy.context.evaluated_depsgraph_get(), incremental=False)
         assert effects(final())['radiance_cache']['runs']
         assert effects(viewport())['radiance_cache']['runs']
+        assert not effects(final())['cache_rsm']['runs']
         yard.panoptes.radiance_cache.first_bounce = 'RSM'
-        assert any('reflective shadow maps' in warning for warning in self.run(final())['warnings'])
+        assert effects(final())['cache_rsm']['runs'] and not effects(final())['cache_first_bounce']['runs']
         yard.panoptes.radiance_cache.enabled = False
         assert effects(final())['radiance_cache']['reason'] == 'switched off in the settings'
 

@@ -147,6 +147,15 @@ TEST(FramePlan, RunsWhatTheSceneCallsForAndNothingElse) {
          s.occlusion.strength = 0;
        },
        {"direct_light", "radiance_cache", "cache_first_bounce"}},
+      {"one bounce by reflective shadow maps",
+       [](auto& f, auto& s) {
+         f.lamps[0] = 1;
+         s.cache.enabled = true;
+         s.cache.bounces = 1;
+         s.cache.first_bounce = radiance_cache::FirstBounce::kRsm;
+         s.occlusion.strength = 0;
+       },
+       {"direct_light", "radiance_cache", "cache_rsm"}},
       {"one bounce of the world's light",
        [](auto& f, auto& s) {
          f.world = true;
@@ -220,7 +229,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 15u + 4u + 6u + 5u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 15u + 5u + 6u + 5u + size_t(film::kPassCount));
   }
 }
 

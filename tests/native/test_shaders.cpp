@@ -10,6 +10,7 @@
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "radiance_cache/geometry_volume.h"
+#include "radiance_cache/reflective_maps.h"
 #include "rasterize/emitter_lights.h"
 #include "rasterize/g_buffer.h"
 #include "rasterize/sun_cascades.h"
@@ -224,6 +225,7 @@ class Shaders : public ::testing::Test {
         for (int bits = 0; bits < 16; ++bits) add(rasterize::surface_program(m, surfaces(bits)));
         add(rasterize::emitter_program(m));
         add(radiance_cache::surfels_program(m));
+        add(radiance_cache::rsm_surfaces_program(m));
         // What a material is makes no difference to how its lobes are stored: one is tried with all.
         for (int bits = 0; bits < 16; ++bits)
           if (bits == 0 || bits == 15 || m.textures.size() == 2)
@@ -282,7 +284,8 @@ class Shaders : public ::testing::Test {
         add(specular_rays::surroundings_program({surfaces(15), false}, {split, cache}));
         for (bool world : {false, true})
           for (bool bounced : {false, true})
-            add(radiance_cache::gather_program({cache.encoding, split, world, bounced}));
+            for (bool reflected : {false, true})
+              add(radiance_cache::gather_program({cache.encoding, split, world, bounced, reflected}));
       }
     add(radiance_cache::bounce_program({}, true, false));
     add(radiance_cache::bounce_program({.walls = false}, true, true));
@@ -293,6 +296,8 @@ class Shaders : public ::testing::Test {
                              radiance_cache::Occupancy::kAll})
         add(radiance_cache::list_cells_program(occupancy, either));
       add(radiance_cache::march_program(either ? 12 : 0, either));
+      for (bool mixed : {false, true})
+        add(radiance_cache::rsm_gather_program(mixed, either ? 12 : 0, either));
       add(radiance_cache::light_surfels_program(either));
     }
     for (int bits = 0; bits < 256; ++bits) {
