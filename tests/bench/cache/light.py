@@ -12,6 +12,8 @@ from reference import Reference
 SCENES = ("cornell", "sponza_crytek", "canyon", "two_spots", "doorway")
 # Effects whose passes are the cache's; their names begin so. What makes voxels is told apart, as in Table 5.1.
 CACHE, VOXELS = ("radiance_cache", "cache_"), ("radiance_cache_voxels",)
+# Of look_up.glsl.
+LEAST_LIGHT = 1e-20
 
 
 class Light(Reference):
@@ -20,6 +22,15 @@ class Light(Reference):
     def cached(self, samples, passes=("DiffInd",), **settings):
         """A Shot of Real-time; `settings` as in settings['cache'] of a request."""
         return self.take("realtime", passes, samples, cache=settings)
+
+    def clipped(self, **settings):
+        """Share of the cache's light, that of the world with it, which is cut off where harmonics ring below 0."""
+        light, share = (self.take("realtime", ("Combined",), 1, cache={**settings, "picture": picture}).passes["Combined"].astype(np.float64)
+                        for picture in ("light", "clipped"))
+        # Where all light is cut off, the share is of LEAST_LIGHT.
+        light = light[:, :, :3].sum(axis=2)
+        cut = np.maximum(light, LEAST_LIGHT) * share[:, :, 0]
+        return float(cut.sum() / light.sum()) if light.any() else 0.0
 
     def colour(self):
         """DiffCol of the first surfaces, float64[height, width, 3]."""
