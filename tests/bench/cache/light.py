@@ -12,8 +12,6 @@ from reference import Reference
 SCENES = ("cornell", "sponza_crytek", "canyon", "two_spots", "doorway")
 # Effects whose passes are the cache's; their names begin so. What makes voxels is told apart, as in Table 5.1.
 CACHE, VOXELS = ("radiance_cache", "cache_"), ("radiance_cache_voxels",)
-# Of look_up.glsl.
-LEAST_LIGHT = 1e-20
 
 
 class Light(Reference):
@@ -27,9 +25,9 @@ class Light(Reference):
         """Share of the cache's light, that of the world with it, which is cut off where harmonics ring below 0."""
         light, share = (self.take("realtime", ("Combined",), 1, cache={**settings, "picture": picture}).passes["Combined"].astype(np.float64)
                         for picture in ("light", "clipped"))
-        # Where all light is cut off, the share is of LEAST_LIGHT.
-        light = light[:, :, :3].sum(axis=2)
-        cut = np.maximum(light, LEAST_LIGHT) * share[:, :, 0]
+        light, share = light[:, :, :3].sum(axis=2), share[:, :, 0]
+        # Where nothing is left, the share does not tell of how much; the mean is more than it is likely to be.
+        cut = np.where(light > 0.0, light, light.mean()) * share
         return float(cut.sum() / light.sum()) if light.any() else 0.0
 
     def colour(self):
