@@ -67,6 +67,10 @@ class Changeover:
         """Tell whether a job works on it."""
         return self._now.is_running()
 
+    def is_fetched(self):
+        """Tell whether nothing of a job is left to fetch."""
+        return self._now.is_fetched()
+
     def is_unread(self):
         """Tell whether the job that works on it may not have read its scene."""
         return self._now.is_unread()

@@ -51,6 +51,10 @@ class Refinement:
         """Return for how long the job has been working."""
         return time.monotonic() - self._started
 
+    def is_fetched(self):
+        """Tell whether nothing of a job is left to fetch. It may end between two questions about it."""
+        return self._job is None
+
     def has_news(self):
         """Tell whether `advance` would change something."""
         if self._job is None:

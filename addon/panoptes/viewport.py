@@ -111,7 +111,7 @@ class Viewport:
         self._advance()
         if not self._shows(request):
             self._begin(request, rectangle)
-        if not self._picture.is_complete() and not self._picture.is_running():
+        if not self._picture.is_complete() and self._picture.is_fetched():
             self._start(context, depsgraph)
         self._advance()
         engine.update_stats('Panoptes', self._status())

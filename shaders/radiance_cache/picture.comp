@@ -99,7 +99,8 @@ vec3 shown(ivec2 pixel, GBufferPixel g) {
 #if PICTURE == LIGHT
   return light.world + light.bounced;
 #else
-  return vec3(light.clipped);
+  // All of it where harmonics leave nothing.
+  return vec3(min(light.clipped, 1.0));
 #endif
 }
 #endif

@@ -124,6 +124,7 @@ def test_cached_light_is_measured_against_both_references(tmp_path):
         assert rows[name]["energy"] > 0.0 and rows[name]["both"] < rows[name]["paths"]
     # Chrominance without direction shows where red and green light meet.
     assert rows["y3co1cg1, 2 bounces"]["lab"] > rows["rgb3, 2 bounces"]["lab"]
+    assert all(rows[f"{name}, 2 bounces"]["clipped"] < 0.01 for name in ("y3co1cg1", "rgb3"))
     assert (tmp_path / "error_two_spots_2.png").stat().st_size > 0
 
 
@@ -140,6 +141,25 @@ def test_what_makes_the_cache_cheaper_is_told_step_by_step():
         assert times == sorted(times) and times[-1] > 0.0
     for row in found["stability"]["two_spots"].values():
         assert 0.0 <= row["frame mean"] <= row["frame largest"] <= row["block largest"]
+
+
+@pytest.mark.slow
+def test_ladders_climb_one_setting_at_a_time():
+    found = bench_cache("canyon", "--section", "ladders", "--reference-samples", "16", "--ladder", "resolution", "--ladder", "depth stride")["ladders"]["canyon"]
+    assert set(found) == {"resolution", "depth stride"}
+    # Finer cells are nearer to paths, and cost more.
+    coarse, fine = found["resolution"]["8"], found["resolution"]["48"]
+    assert fine["both"] < coarse["both"] and fine["cache ms"] > coarse["cache ms"]
+
+
+@pytest.mark.slow
+def test_encodings_of_one_size_and_the_cells_that_are_seen():
+    found = bench_cache("two_spots", "--section", "speed", "--part", "5.6", "--part", "5.11")["speed"]
+    rows = found["5.11"]["two_spots"]
+    assert set(rows) == {"y3co1cg1", "y2co2cg2", "rgb2"}
+    # The third band of luminance is worth more to luminance than chrominance costs it.
+    assert rows["y3co1cg1"]["luminance rmse"] < rows["y2co2cg2"]["luminance rmse"]
+    assert all(row["depth occupancy"] < row["geometry occupancy"] <= 1.0 for row in found["5.6"]["rows"].values())
 
 
 @pytest.mark.slow

@@ -92,6 +92,17 @@ class TestRefinement:
         # The mean of samples 0 to 9, each counted once.
         assert found.is_complete() and found.pixels == pytest.approx(4.5)
 
+    def test_a_job_that_ends_between_two_questions_is_fetched_before_the_next(self, engine):
+        found = picture()
+        found.start(engine)
+        engine.jobs[0].done = 6
+        found.advance()
+        engine.jobs[0].done = 8
+        # It gives its turn to other views, but has no samples to ask another job for.
+        assert not found.is_running() and not found.is_complete() and not found.is_fetched() and found.has_news()
+        found.advance()
+        assert found.is_complete() and found.is_fetched() and found.samples == 8
+
     def test_interrupted_before_the_first_sample(self, engine):
         found = picture()
         found.start(engine)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the cache's light is from that of paths: the section error, for each encoding and number of bounces."""
+"""How far the cache's light is from that of paths: the section error, for each encoding and number of bounces.
+
+Beside what judge.py tells: clipped, the share of the cache's light that is cut off where harmonics ring below 0.
+"""
 
 from pathlib import Path
 
@@ -22,7 +25,8 @@ def measure(path, options):
         shown = [(paths + cycles) / 2.0]
         for encoding in options.encodings:
             found = scene.cached(options.samples, bounces=bounces, encoding=encoding).passes["DiffInd"][:, :, :3].astype(np.float64)
-            rows[f"{encoding}, {bounces} bounces"] = judge.row(found, paths, cycles, colour)
+            rows[f"{encoding}, {bounces} bounces"] = {**judge.row(found, paths, cycles, colour),
+                                                      "clipped": scene.clipped(bounces=bounces, encoding=encoding)}
             shown.append(found)
         write(options.pictures, f"error_{path.stem}_{bounces}", [picture * colour for picture in shown])
     return {"scene": path.stem, "size": scene.size, "rows": rows}
@@ -42,5 +46,5 @@ def run(options):
         scene = measure(path, options)
         found.append(scene)
         tables.show(f"error: {scene['scene']}, {scene['size'][0]}x{scene['size'][1]}, {options.samples} samples of the film, references of "
-                    f"{options.reference_samples}", scene["rows"], judge.FORMATS)
+                    f"{options.reference_samples}", scene["rows"], {**judge.FORMATS, "clipped": ".2%"})
     return found

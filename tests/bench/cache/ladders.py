@@ -3,6 +3,10 @@
 
 One setting changes at a time, all others are as they are by themselves but for those that a ladder names: what
 reflective shadow maps do shows in their own way to find the first bounce.
+
+The stride of pixels that tell which cells are seen does nothing in small pictures, where the engine looks at no fewer
+than 60 rows. So its pictures are larger, with references of as many paths in all: their noise counts for nothing in
+"both" and "light", but is in the other columns.
 """
 
 from typing import NamedTuple
@@ -18,10 +22,11 @@ SCENES = ("sponza_crytek", "canyon", "doorway")
 
 
 class Ladder(NamedTuple):
-    """Values of one setting, with others that they need."""
+    """Values of one setting, with others that they need, and by how much larger the pictures' sides are."""
     setting: str
     values: tuple
     others: dict = {}
+    larger: int = 1
 
 
 RSM = {"first_bounce": "rsm", "bounces": 1}
@@ -34,15 +39,17 @@ LADDERS = {
     # 0: every voxel that a ray passes.
     "march steps": Ladder("march_steps", (4, 6, 8, 12, 24, 48, 0)),
     "voxel fill": Ladder("voxel_fill", (0.0, 0.25, 0.5, 0.75, 1.0)),
-    "depth stride": Ladder("depth_stride", (1, 2, 4, 8, 16, 32), {"occupancy": "depth", "bounces": 1}),
+    "depth stride": Ladder("depth_stride", (1, 2, 4, 8), {"occupancy": "depth", "bounces": 1}, larger=4),
 }
 
 
-def climb(scene, ladder, colour, options):
+def climb(scene, ladder, options):
     """One ladder: {value: row}."""
+    colour = scene.colour()
     settings = {str(value): {"bounces": BOUNCES, **ladder.others, ladder.setting: value} for value in ladder.values}
     bounces = ladder.others.get("bounces", BOUNCES)
-    paths, cycles = (trace(options.reference_samples, bounces) for trace in (scene.paths, scene.cycles))
+    samples = max(options.reference_samples // ladder.larger**2, 1)
+    paths, cycles = (trace(samples, bounces) for trace in (scene.paths, scene.cycles))
     taken = stage.by_turns(settings, lambda chosen: scene.cached(options.samples, **chosen), options.repeat)
     return {name: {**judge.row(shots[-1].passes["DiffInd"][:, :, :3].astype(np.float64), paths, cycles, colour),
                    "voxels ms": stage.median_milliseconds(shots, *light.VOXELS), "cache ms": light.cache_milliseconds(shots)}
@@ -53,10 +60,10 @@ def run(options):
     """Measures and prints; returns what was found."""
     found = {}
     for path in light.paths_of(options, SCENES):
-        scene = light.Light(path, options.pixels)
-        colour, of_scene = scene.colour(), found.setdefault(path.stem, {})
+        of_scene = found.setdefault(path.stem, {})
         for name in options.ladders or LADDERS:
-            of_scene[name] = climb(scene, LADDERS[name], colour, options)
+            scene = light.Light(path, [side * LADDERS[name].larger for side in options.pixels])
+            of_scene[name] = climb(scene, LADDERS[name], options)
             tables.show(f"ladders: {name} on {path.stem}, {scene.size[0]}x{scene.size[1]}, {options.samples} samples of the film",
                         of_scene[name], {**judge.FORMATS, "voxels ms": ".1f", "cache ms": ".1f"})
     return found

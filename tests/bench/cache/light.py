@@ -21,6 +21,15 @@ class Light(Reference):
         """A Shot of Real-time; `settings` as in settings['cache'] of a request."""
         return self.take("realtime", passes, samples, cache=settings)
 
+    def clipped(self, **settings):
+        """Share of the cache's light, that of the world with it, which is cut off where harmonics ring below 0."""
+        light, share = (self.take("realtime", ("Combined",), 1, cache={**settings, "picture": picture}).passes["Combined"].astype(np.float64)
+                        for picture in ("light", "clipped"))
+        light, share = light[:, :, :3].sum(axis=2), share[:, :, 0]
+        # Where nothing is left, the share does not tell of how much; the mean is more than it is likely to be.
+        cut = np.where(light > 0.0, light, light.mean()) * share
+        return float(cut.sum() / light.sum()) if light.any() else 0.0
+
     def colour(self):
         """DiffCol of the first surfaces, float64[height, width, 3]."""
         return self.take("realtime", ("DiffCol",), 1).passes["DiffCol"].astype(np.float64)
