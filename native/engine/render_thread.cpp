@@ -268,7 +268,11 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   stats.build_ms = build_ms;
   stats.total_ms = ms_since(start);
   stats.rays = paths ? path_tracer_.rays() : realtime_.rays();
-  if (!debug && !paths) stats.cache = realtime_.cache_occupied();
+  if (!debug && !paths) {
+    stats.cache = realtime_.cache_occupied();
+    if (std::string warning = realtime_.cache_warning(); !warning.empty())
+      warnings.push_back(std::move(warning));
+  }
   if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
   stats.estimated_error = film_.estimated_error();

@@ -5,6 +5,7 @@
 #include "radiance_cache/placement.h"
 #include "radiance_cache/scales_shared.h"
 
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
@@ -16,6 +17,10 @@ namespace {
 
 // Squares of pixels along the shorter side of a picture that tell which cells are seen, if it has so many.
 constexpr int kLeastSquares = 60;
+
+// How far before surfels their shadows are looked up, in voxels. None leaves lit walls of several faces
+// up to a tenth too dark, a whole one lets light around thin columns.
+constexpr float kShadowsBefore = 0.5f;
 
 // A buffer of at least `bytes`, with room to spare so that it is not made anew each time.
 void want(gl::Buffer& buffer, int64_t bytes) {
@@ -182,6 +187,14 @@ void RadianceCache::list_cells() {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, seeds_.id());
   gl::dispatch(cells, GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   counter.read(0, 4, &active_);
+  directions_ = int(std::clamp<int64_t>(settings_.most_rays / std::max(active_, 1u), 1, settings_.directions));
+}
+
+std::string RadianceCache::warning() const {
+  if (!runs_ || directions_ == settings_.directions) return {};
+  return fmt::format("{} cells of indirect light look in {} directions each instead of {}, or there would be too many "
+                     "rays: choose a lower Resolution or fewer Cascades",
+                     active_, directions_, settings_.directions);
 }
 
 void RadianceCache::see(const rasterize::GBuffer& g_buffer, const glm::dvec3& origin) {
@@ -234,12 +247,12 @@ void RadianceCache::bind_lattice(int location) const {
 
 void RadianceCache::march() {
   gl::PassScope scope(timer_, "radiance_cache_march");
-  const uint32_t rays = active_ * uint32_t(settings_.directions);
+  const uint32_t rays = active_ * uint32_t(directions_);
   want(met_, met_texels_, GL_R32UI, std::max(int64_t(rays), int64_t(1)) * 4);
   if (rays == 0) return;
   programs_.get(march_program(settings_.march_steps, settings_.walls)).use();
   bind_volume();
-  glUniform3ui(0, active_, unsigned(settings_.directions), seed_);
+  glUniform3ui(0, active_, unsigned(directions_), seed_);
   bind_lattice(1);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, met_.id());
@@ -268,7 +281,7 @@ void RadianceCache::add_lamps(const Lamps& lamps) {
   glUniform1ui(2, lamps.first);
   glUniform1ui(3, lamps.count);
   glUniform3f(4, offset.x, offset.y, offset.z);
-  glUniform1f(5, float(voxel()));
+  glUniform1f(5, kShadowsBefore * float(voxel()));
   gl::dispatch(volume_.solid(), GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -338,13 +351,13 @@ void RadianceCache::gather_rays(bool bounced, bool reflected) {
   programs_.get(gather_program({settings_.encoding, split_, world_light_, bounced, reflected})).use();
   met_texels_.bind(0);
   if (bounced) radiosity_texels_.bind(1);
-  if (world_light_) world_->map(settings_.directions).bind(2);
+  if (world_light_) world_->map(directions_).bind(2);
   seeds_texels_.bind(3);
   if (reflected) reflective_.light().bind(6);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, cells_.id());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, list_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, kCellsBlock, list_block_.id());
-  glUniform3ui(0, active_, unsigned(settings_.directions), seed_);
+  glUniform3ui(0, active_, unsigned(directions_), seed_);
   bind_lattice(1);
   gl::dispatch(active_, GL_TEXTURE_FETCH_BARRIER_BIT);
 }

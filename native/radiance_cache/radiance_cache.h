@@ -30,6 +30,7 @@
 
 #include <array>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace panoptes::radiance_cache {
@@ -73,6 +74,9 @@ class RadianceCache {
   Occupied occupied() const {
     return runs_ ? Occupied{active_, volume_.volumes().count.y} : Occupied{};
   }
+
+  // What an artist should know of the frame; empty if there is nothing.
+  std::string warning() const;
 
   // Lamps light the surfels batch by batch: begin_lamps() once before them all, then add_lamps() for
   // each while its maps are there. Positions of lamps are relative to `origin`.
@@ -161,6 +165,7 @@ class RadianceCache {
   bool transmission_ = false;
   bool reached_ = false;  // reach_ is that of the volume
   uint32_t active_ = 0;
+  int directions_ = 0;  // of rays of a cell
   ReflectiveMaps reflective_;
 
   CellHistory history_;

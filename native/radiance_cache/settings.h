@@ -41,6 +41,9 @@ struct Settings {
 
   FirstBounce first_bounce = FirstBounce::kSurfaces;
   int directions = 64;   // marched from each cell, n_sec, 8 .. 512
+  // Of all cells together, above 0; as many as a buffer texture holds on every driver. Where they
+  // would be more, cells look in fewer directions.
+  int64_t most_rays = int64_t(1) << 26;
   int march_steps = 0;   // jittered samples along a ray, 0 .. 256; 0: every voxel that it passes
   float voxel_fill = 0.75f;  // area of surface that makes a voxel solid, in faces of it, 0 .. 1
   Occupancy occupancy = Occupancy::kAuto;

@@ -88,6 +88,7 @@ class Realtime {
   // Writes into the frame's plan what was only found while it ran.
   void amend(plan::Effects& plan) const { occlusion_.amend(plan); }
   radiance_cache::Occupied cache_occupied() const { return cache_.occupied(); }
+  std::string cache_warning() const { return cache_.warning(); }
 
  private:
   void write_depth(const gpu_scene::GpuScene& gpu, film::Film& film);

@@ -98,7 +98,24 @@ TEST(CacheHardCases, AFlatSceneAndASingleTriangle) {
 TEST(CacheHardCases, NothingButLamps) {
   TestScene s = table({});
   s.instances.clear();
-  EXPECT_NEAR(mean_of(render(s, cached()), Pass::kCombined), 0.3, 1e-6);
+  const Picture p = render(s, cached());
+  EXPECT_NEAR(mean_of(p, Pass::kCombined), 0.3, 1e-6);
+  for (Pass pass : {Pass::kDiffDir, Pass::kDiffInd})
+    for (float value : p[pass]) EXPECT_EQ(value, 0);
+}
+
+TEST(CacheHardCases, MoreRaysThanThereMayBe) {
+  engine::RenderRequest r = cached();
+  const Picture all = render(table({}), r);
+  EXPECT_TRUE(all.stats.warnings.empty());
+  r.cache.most_rays = 20 * all.stats.cache.cells + 1;
+  const Picture few = render(table({}), r);
+  ASSERT_EQ(few.stats.warnings.size(), 1u);
+  EXPECT_NE(few.stats.warnings[0].find("20 directions"), std::string::npos);
+  EXPECT_NEAR(mean_of(few, Pass::kDiffDir), mean_of(all, Pass::kDiffDir), 0.1 * mean_of(all, Pass::kDiffDir));
+  // There is always one.
+  r.cache.most_rays = 1;
+  EXPECT_GT(mean_of(render(table({}), r), Pass::kDiffDir), 0);
 }
 
 TEST(CacheHardCases, ACameraInsideOfThings) {
