@@ -52,7 +52,7 @@ int cell_texels(Encoding encoding);
 class RadianceCache {
  public:
   RadianceCache(gl::ProgramCache& programs, gl::PassTimer& timer)
-      : programs_(programs), timer_(timer), history_(programs, timer), reflective_(programs, timer) {}
+      : programs_(programs), timer_(timer), reflective_(programs, timer), history_(programs, timer) {}
 
   struct Frame {
     const gpu_scene::Camera& camera;

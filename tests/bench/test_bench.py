@@ -144,6 +144,15 @@ def test_what_makes_the_cache_cheaper_is_told_step_by_step():
 
 
 @pytest.mark.slow
+def test_walls_keep_light_apart(tmp_path):
+    rows = bench_cache("doorway", "--section", "leaks", "--reference-samples", "32", "--pictures", tmp_path)["leaks"]["doorway"]
+    # The dark room is brighter by what has leaked.
+    assert rows["both sides"]["energy"] > rows["what seeds see"]["energy"]
+    assert rows["both sides"]["both"] > rows["what seeds see"]["both"]
+    assert (tmp_path / "leaks_doorway.png").stat().st_size > 0
+
+
+@pytest.mark.slow
 def test_ladders_climb_one_setting_at_a_time():
     found = bench_cache("canyon", "--section", "ladders", "--reference-samples", "16", "--ladder", "resolution", "--ladder", "depth stride")["ladders"]["canyon"]
     assert set(found) == {"resolution", "depth stride"}

@@ -10,6 +10,7 @@ Sections, each of one or more tables; the dissertation's figures that they answe
     ladders    what each setting is worth: resolution, samples of reflective shadow maps, directions, steps, ...
     speed      what occupancy and encodings save, by Table 5.1's own definition; the camera's path, balanced encodings,
                times of the stages  [Table 5.1, 5.6, 5.11, 5.12]
+    leaks      what does not pass thin walls, beside cells that light both sides of them
     stability  flicker while a lamp and the camera move slowly
     frame      a whole picture after an edit, beside Cycles' first sample
 
@@ -28,11 +29,12 @@ sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[1] / "metrics")]
 import error  # noqa: E402
 import frame  # noqa: E402
 import ladders  # noqa: E402
+import leaks  # noqa: E402
 import speed  # noqa: E402
 import stability  # noqa: E402
 from engines import ENGINES, own_arguments  # noqa: E402
 
-SECTIONS = {"error": error.run, "ladders": ladders.run, "speed": speed.run, "stability": stability.run, "frame": frame.run}
+SECTIONS = {"error": error.run, "ladders": ladders.run, "speed": speed.run, "leaks": leaks.run, "stability": stability.run, "frame": frame.run}
 
 
 def parse_options():
