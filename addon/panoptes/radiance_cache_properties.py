@@ -71,10 +71,10 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
         items=(
             ('Y3CO1CG1', 'Brightness Fine, Colour Mean', 'Nine numbers a cell for brightness by direction, two for '
                                                          'a colour without any (Y3Co1Cg1). Fastest and smallest. '
-                                                         'Lights of different colours from opposite sides mix'),
+                                                         'Light of coloured walls and of different lamps mixes'),
             ('Y3CO2CG2', 'Brightness Fine, Colour Coarse', 'Nine numbers for brightness, eight for colour (Y3Co2Cg2). '
-                                                           'Keeps apart lights of different colours from opposite '
-                                                           'sides, for half as much again'),
+                                                           'Keeps apart what coloured walls and different lamps '
+                                                           'send, for half as much again'),
             ('Y3CO3CG3', 'Brightness and Colour Fine', '27 numbers (Y3Co3Cg3). Shows what is lost by the others; '
                                                        'takes more than twice as much'),
             ('RGB3', 'Red, Green and Blue Fine', '27 numbers (RGB3). The same quality and cost, for comparison'),
@@ -82,7 +82,7 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
                                                          'detail, for comparison'),
             ('RGB2', 'Red, Green and Blue Coarse', 'Twelve numbers (RGB2). The same, for comparison'),
         ),
-        default='Y3CO1CG1')
+        default='Y3CO2CG2')
     luminance: _strength('Strength', 'Strength of light that comes from other surfaces; that of the world stays')
     chrominance: _strength('Colour', 'Strength of its colour: 0 is grey, more than 1 exaggerates it')
     region_collection: PointerProperty(

@@ -49,7 +49,7 @@ class TestSettings:
 
     def test_defaults(self, ours):
         assert sent() == {
-            'enabled': True, 'bounces': 2, 'resolution': 0, 'voxels': 4, 'cascades': 0, 'encoding': 'y3co1cg1',
+            'enabled': True, 'bounces': 2, 'resolution': 0, 'voxels': 4, 'cascades': 0, 'encoding': 'y3co2cg2',
             'luminance': 1.0, 'chrominance': 1.0, 'regions': [], 'first_bounce': 'surfaces', 'directions': 64,
             'march_steps': 0, 'voxel_fill': 0.75, 'occupancy': 'auto', 'depth_stride': 4, 'dilate': True,
             'rsm_samples': 200, 'rsm_resolution': 128, 'rsm_spread': pytest.approx(0.25), 'rsm_mixed': True,
@@ -58,7 +58,7 @@ class TestSettings:
 
     @pytest.mark.parametrize('name, value', [
         ('enabled', False), ('bounces', 0), ('bounces', 8), ('resolution', 24), ('voxels', 8), ('cascades', 3),
-        ('encoding', 'Y3CO2CG2'), ('encoding', 'RGB2'), ('luminance', 0.5), ('chrominance', 0.0),
+        ('encoding', 'Y3CO1CG1'), ('encoding', 'RGB2'), ('luminance', 0.5), ('chrominance', 0.0),
         ('first_bounce', 'RSM'), ('directions', 512), ('march_steps', 12), ('voxel_fill', 1.0),
         ('occupancy', 'DEPTH'), ('depth_stride', 1), ('dilate', False), ('rsm_samples', 4096),
         ('rsm_resolution', 1024), ('rsm_spread', 0.5), ('rsm_mixed', False), ('blend', 0.0),

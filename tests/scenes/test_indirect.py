@@ -28,7 +28,7 @@ def relative(difference, reference):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name, size, cycles_samples, largest_error", [("cornell", (54, 54), 256, 0.22), ("doorway", (72, 45), 1024, 0.3)])
+@pytest.mark.parametrize("name, size, cycles_samples, largest_error", [("cornell", (54, 54), 256, 0.12), ("doorway", (72, 45), 1024, 0.3)])
 def test_bounced_light_is_that_of_cycles(name, size, cycles_samples, largest_error):
     if name == "cornell" and not renders.SHARED.joinpath("cornell.blend").is_file():
         pytest.skip(f"cornell is not at {renders.SHARED}; PANOPTES_SHARED_SCENES can name its folder")
