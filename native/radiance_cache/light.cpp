@@ -12,7 +12,7 @@ namespace {
 
 // How far before surfels their shadows are looked up, in voxels. None leaves lit walls of several faces
 // up to a tenth too dark, a whole one lets light around thin columns.
-constexpr float kShadowsBefore = 0.5f;
+constexpr float kShadowsBefore = 0.75f;
 
 }  // namespace
 
