@@ -51,6 +51,7 @@ void AmbientOcclusion::begin(const gpu_scene::Camera& camera, const Settings& se
                              const plan::Effects& plan, uint32_t seed) {
   settings_ = settings;
   camera_ = camera;
+  if (seed != seed_) phantom_revision_ = -1;  // alpha has other thresholds
   seed_ = seed;
   runs_ = plan::runs(plan, "ambient_occlusion");
   bent_ = runs_ && plan::runs(plan, "bent_normals");
