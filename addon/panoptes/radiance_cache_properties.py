@@ -61,8 +61,8 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
     cascades: IntProperty(
         name='Cascades',
         description='Volumes of cells in one another, each twice as wide as the one in it, with the smallest about '
-                    'the camera: fine cells nearby in a large scene. 1 is one volume for all of it; so is 0, which '
-                    'leaves the choice to Panoptes, as yet',
+                    'the camera: fine cells nearby in a large scene. 1 is one volume for all of it. 0 leaves the '
+                    'choice to Panoptes: as many as it takes for cells to be small in the picture',
         default=0, min=0, max=3)
     encoding: EnumProperty(
         name='Encoding',

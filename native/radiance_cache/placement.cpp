@@ -12,8 +12,11 @@ namespace {
 constexpr int kLeastCells = 24, kMostCells = 32;
 constexpr double kChosenCells = 12'000;
 
-// A cell as wide as this share of the distance that it is seen from is detail enough.
-constexpr double kSeenCell = 0.12;
+// A cell as wide as this share of what the picture's longer side shows is detail enough.
+constexpr double kSeenCell = 0.15;
+
+// Cascades are about the camera as long as the finest reaches so far past the distance that it looks at.
+constexpr double kReach = 1.25;
 
 // Cells come in sizes that are so many to an octave, so that a scene which moves a little keeps them;
 // cascades in octaves, or they would change with every step of the camera.
@@ -94,7 +97,26 @@ int64_t voxels_of(const std::vector<Grid>& grids) {
   return sum;
 }
 
+// Metres that the longer side of the picture shows at a distance.
+double seen_width(const gpu_scene::Camera& camera, double distance) {
+  const double scale = std::min(std::abs(camera.projection[0][0]), std::abs(camera.projection[1][1]));
+  const double width = 2 / scale * (camera.perspective() ? distance : 1);
+  return std::isfinite(width) && width > 0 ? width : distance;
+}
+
+// Where cascades whose finest reaches so many metres about its middle lie best.
+glm::dvec3 middle_of(const gpu_scene::Camera& camera, double distance, double reach) {
+  const glm::dvec3 eye = place_of(camera);
+  const glm::dvec3 axis = -glm::dvec3(glm::inverse(camera.world_to_camera)[2]);
+  const double length = glm::length(axis);
+  const double ahead = distance - reach / kReach;
+  const glm::dvec3 middle = eye + axis * (ahead / length);
+  return ahead > 0 && length > 0 && finite(middle) ? middle : eye;
+}
+
 }  // namespace
+
+bool choose_by_distance(const Settings& settings) { return settings.cascades != 1; }
 
 std::vector<Grid> choose_grids(const scene::Bounds& bounds, const gpu_scene::Camera& camera,
                                const Settings& settings, double distance) {
@@ -112,19 +134,22 @@ std::vector<Grid> choose_grids(const scene::Bounds& bounds, const gpu_scene::Cam
   const double whole = rounded_up(longest / std::max(resolution - 3, 1), kSizes);
   int cascades = std::clamp(settings.cascades, 1, kMostCascades);
   double finest = whole * std::exp2(1.0 - cascades);
-  if (settings.cascades == 0 && distance > 0 && std::isfinite(distance)) {
-    const double seen = std::max(kSeenCell * distance, 1e-6 * whole);
+  const bool looks = distance > 0 && std::isfinite(distance);
+  if (settings.cascades == 0 && looks) {
+    const double seen = std::max(kSeenCell * seen_width(camera, distance), 1e-6 * whole);
     const int wanted = std::max(int(std::ceil(std::log2(whole / seen) - 1e-9)), 0) + 1;
     cascades = std::min(wanted, kMostCascades);
     // All of the scene rather than the last octave of detail, and detail rather than a scene that
     // would take more of it.
     finest = wanted <= kMostCascades + 1 ? whole * std::exp2(1.0 - cascades)
-                                         : rounded_up(seen, kCascadeSizes);
+                                         : rounded_up(0.5 * seen, kCascadeSizes);
   }
+
+  const glm::dvec3 middle = looks ? middle_of(camera, distance, 0.5 * finest * resolution) : eye;
 
   std::vector<Grid> grids;
   for (int i = 0; i < cascades; ++i) {
-    grids.push_back(grid_over(box, finest * std::exp2(double(i)), settings.voxels, eye, resolution));
+    grids.push_back(grid_over(box, finest * std::exp2(double(i)), settings.voxels, middle, resolution));
     if (grids.back().cell >= whole) break;
   }
   // Voxels may be larger than wanted, rather than cells.

@@ -2,8 +2,8 @@
 // part of it or be centered at the user"). Pure: no GL.
 //
 // One volume over the whole scene is the cheapest: it outlives every move of the camera. Where its
-// cells are much larger than what the camera is near to, cascades lie about the camera, each of cells
-// twice as large as those of the one in it. Corners lie on a lattice of the whole world, so that cells
+// cells are large beside what the camera shows, cascades lie about the camera, or about what it looks at
+// where that is far away, each of cells twice as large as those of the one in it. Corners lie on a lattice of the whole world, so that cells
 // stay where they are while a volume moves: light does not swim.
 #pragma once
 
@@ -16,10 +16,13 @@
 
 namespace panoptes::radiance_cache {
 
+// Whether the volumes depend on how far away the camera sees things.
+bool choose_by_distance(const Settings& settings);
+
 // The grids for a scene within `bounds`, the finest first; at least one, of finite places whatever the
-// input, and of no more than kMostVoxels. `camera` looks at things about `distance` metres away; 0:
-// nobody knows, then at the scene as a whole. Around all of the scene that a grid covers lies one cell,
-// since look-ups fade over the last one.
+// input, and of no more than kMostVoxels. `camera` looks at things about `distance` metres away along
+// its axis; 0: nobody knows, then at the scene as a whole. Around all of the scene that a grid covers
+// lies one cell, since look-ups fade over the last one.
 std::vector<Grid> choose_grids(const scene::Bounds& bounds, const gpu_scene::Camera& camera,
                                const Settings& settings, double distance = 0);
 

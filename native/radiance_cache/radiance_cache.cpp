@@ -4,10 +4,14 @@
 #include "radiance_cache/room.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace panoptes::radiance_cache {
 
 namespace {
+
+// Distances that differ by less than so many octaves have the same volumes in frames that follow each other.
+constexpr double kSameDistance = 0.5;
 
 // Whether bounced light is anywhere multiplied by something else than 1.
 bool scales(const RadianceCache::Frame& frame) {
@@ -40,20 +44,6 @@ void RadianceCache::begin(const Frame& frame) {
            (scaled_ || plan::runs(frame.plan, "pass_diffdir") || plan::runs(frame.plan, "pass_diffind") ||
             plan::runs(frame.plan, "pass_glossdir") || plan::runs(frame.plan, "pass_glossind") ||
             plan::runs(frame.plan, "pass_transdir") || plan::runs(frame.plan, "pass_transind"));
-  const std::vector<Grid> grids = choose_grids(frame.scene.bounds(), frame.camera, settings_);
-  State state = state_of(frame, grids);
-  kept_ = frame.follows && lit_ && !stale_ && state == state_;
-  follows_ = frame.follows;
-  if (!follows_) history_.release();
-  if (kept_) return;
-  stale_ = may_lag(frame, state);
-  lag_ = stale_ ? lag_ + 1 : 0;
-  state_ = std::move(state);
-  lit_ = false;
-  grids_ = grids;
-  const glm::dvec3 high = grids_.back().low + grids_.back().cell * glm::dvec3(grids_.back().cells);
-  whole_ = glm::all(glm::lessThanEqual(grids_.back().low, glm::dvec3(frame.scene.bounds().low))) &&
-           glm::all(glm::greaterThanEqual(high, glm::dvec3(frame.scene.bounds().high)));
   transmission_ = plan::runs(frame.plan, "transmission");
   occupancy_ = settings_.occupancy;
   if (occupancy_ == Occupancy::kAuto) {
@@ -63,7 +53,35 @@ void RadianceCache::begin(const Frame& frame) {
                            plan::runs(frame.plan, "specular_rays");
     occupancy_ = elsewhere ? Occupancy::kGeometry : Occupancy::kDepth;
   }
-  if (!stale_) update_volume(frame.triangles, frame.gpu, frame.view_block);
+  camera_ = frame.camera;
+  bounds_ = frame.scene.bounds();
+  follows_ = frame.follows;
+  if (!follows_) {
+    history_.release();
+    distance_ = 0;
+  }
+  next_ = state_of(frame);
+}
+
+bool RadianceCache::looks_far() const { return runs_ && choose_by_distance(settings_); }
+
+void RadianceCache::place(double distance, const tracing::TriangleList& triangles,
+                          const gpu_scene::GpuScene& gpu, gpu_scene::ViewBlock& view_block) {
+  if (!runs_) return;
+  // A view that turns to and fro does not change its volumes each time.
+  if (!(distance_ > 0) || std::abs(std::log2(distance / distance_)) > kSameDistance) distance_ = distance;
+  next_.grids = choose_grids(bounds_, camera_, settings_, distance_);
+  kept_ = follows_ && lit_ && !stale_ && next_ == state_;
+  if (kept_) return;
+  stale_ = may_lag(triangles);
+  lag_ = stale_ ? lag_ + 1 : 0;
+  state_ = std::move(next_);
+  lit_ = false;
+  grids_ = state_.grids;
+  const glm::dvec3 high = grids_.back().low + grids_.back().cell * glm::dvec3(grids_.back().cells);
+  whole_ = glm::all(glm::lessThanEqual(grids_.back().low, glm::dvec3(bounds_.low))) &&
+           glm::all(glm::greaterThanEqual(high, glm::dvec3(bounds_.high)));
+  if (!stale_) update_volume(triangles, gpu, view_block);
   find_seeds();
   active_ = 0;
   const int64_t texels = int64_t(volume_.volumes().count.y) * cell_texels(settings_.encoding) *
@@ -71,18 +89,18 @@ void RadianceCache::begin(const Frame& frame) {
   want(cells_, cells_texels_, GL_RGBA32F, texels * 16);
 }
 
-RadianceCache::State RadianceCache::state_of(const Frame& frame, const std::vector<Grid>& grids) {
-  State state{frame.settings, frame.seed, {}, grids, frame.scene.lights(),
+RadianceCache::State RadianceCache::state_of(const Frame& frame) {
+  State state{frame.settings, frame.seed, {}, {}, frame.scene.lights(),
               {frame.gpu.geometry_revision(), frame.gpu.surface_revision(), frame.gpu.world_revision(),
                frame.gpu.emission_revision(), frame.gpu.shadow_revision()}};
   for (const plan::Effect& effect : frame.plan) state.effects.push_back(effect.runs);
   return state;
 }
 
-bool RadianceCache::may_lag(const Frame& frame, const State& state) const {
-  return frame.follows && volume_.solid() > 0 && lag_ + 1 < settings_.rebuild_every &&
-         state.settings == state_.settings && state.grids == state_.grids &&
-         list_origin_ == glm::dvec3(frame.triangles.origin());
+bool RadianceCache::may_lag(const tracing::TriangleList& triangles) const {
+  return follows_ && volume_.solid() > 0 && lag_ + 1 < settings_.rebuild_every &&
+         next_.settings == state_.settings && next_.grids == state_.grids &&
+         list_origin_ == glm::dvec3(triangles.origin());
 }
 
 void RadianceCache::update_volume(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,

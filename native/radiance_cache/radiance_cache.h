@@ -61,14 +61,19 @@ class RadianceCache {
     uint32_t seed = 0;
     const scene::Scene& scene;
     const gpu_scene::GpuScene& gpu;
-    const tracing::TriangleList& triangles;  // of that scene
-    gpu_scene::ViewBlock& view_block;        // overwritten
     WorldLight& world;                       // up to date
     // One of frames that come one after the other while the scene changes little, as in a 3D View.
     bool follows = false;
   };
-  // Prepares for a frame: what depends on geometry alone. Releases everything if the plan does not run it.
+  // Prepares for a frame. Releases everything if the plan does not run it.
   void begin(const Frame& frame);
+  // Whether place() depends on how far away the camera sees things.
+  bool looks_far() const;
+  // Chooses the volumes, and makes what depends on geometry alone: once a frame, before all that
+  // follows. `distance`: m, typical of what the camera sees in the picture's first sample; 0: unknown.
+  // `triangles` are those of the scene of begin(); `view_block` is overwritten.
+  void place(double distance, const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
+             gpu_scene::ViewBlock& view_block);
   void release();
   bool runs() const { return runs_; }
   Occupied occupied() const {
@@ -127,9 +132,10 @@ class RadianceCache {
     std::array<int64_t, 5> revisions{};
     bool operator==(const State&) const = default;
   };
-  static State state_of(const Frame& frame, const std::vector<Grid>& grids);
+  // All of it but the grids.
+  static State state_of(const Frame& frame);
   // Whether the volume may lag behind geometry that moves.
-  bool may_lag(const Frame& frame, const State& state) const;
+  bool may_lag(const tracing::TriangleList& triangles) const;
   void update_volume(const tracing::TriangleList& triangles, const gpu_scene::GpuScene& gpu,
                      gpu_scene::ViewBlock& view_block);
   const gl::Texture& shown() const { return blended_ ? history_.texels() : cells_texels_; }
@@ -169,7 +175,10 @@ class RadianceCache {
   ReflectiveMaps reflective_;
 
   CellHistory history_;
-  State state_;
+  State state_, next_;        // of the cells' light; of the frame
+  gpu_scene::Camera camera_;
+  scene::Bounds bounds_;
+  double distance_ = 0;       // that the volumes were chosen by
   bool follows_ = false;
   bool lit_ = false;      // cells hold the light of state_
   bool kept_ = false;     // they did when the frame began, and nobody has seen any others since

@@ -37,6 +37,20 @@ float from_ordered_bits(uint32_t bits) {
 
 }  // namespace
 
+double median_distance(const std::vector<Slab>& slabs) {
+  uint64_t pixels = 0, seen = 0;
+  for (const Slab& slab : slabs) pixels += slab.pixels;
+  for (const Slab& slab : slabs) {
+    if (2 * (seen + slab.pixels) >= pixels) {
+      // As if the octave's pixels were spread over it evenly.
+      const double share = (0.5 * double(pixels) - double(seen)) / double(slab.pixels);
+      return slab.nearest * std::exp2(share);
+    }
+    seen += slab.pixels;
+  }
+  return 0;
+}
+
 std::vector<scene::Bounds> choose_cascades(const std::vector<Slab>& slabs,
                                            const scene::Bounds& scene, double pixel,
                                            bool perspective, int resolution) {

@@ -21,6 +21,9 @@ struct Slab {
   uint32_t pixels = 0;
 };
 
+// Half of the pixels that show something see it at most so far away, within an octave; 0 if none does.
+double median_distance(const std::vector<Slab>& slabs);
+
 constexpr size_t kMostCascades = 4;
 
 // Boxes for a sun's maps, near ones first; empty where one map of the whole scene will do. `slabs`

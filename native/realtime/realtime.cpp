@@ -1,8 +1,7 @@
 #include "realtime/realtime.h"
 
 #include "film/sampling.h"
-
-#include <fmt/format.h>
+#include "realtime/sample_dimensions.h"
 
 #include <algorithm>
 #include <array>
@@ -18,14 +17,6 @@ constexpr float kCutAlpha = 0.5f;
 // Where programs of the frame look up the radiance cache.
 constexpr int kCacheUnit = 16, kCacheBlock = 2;
 
-// Dimensions of the sample sequences: the pixel's, that of glowing surfaces, then two a lamp.
-constexpr uint32_t kPixelDimension = 0, kEmitterDimension = 1, kLampDimension = 2;
-
-void clear(const gl::Texture& texture) {
-  const float zero[4] = {0, 0, 0, 0};
-  glClearTexImage(texture.id(), 0, GL_RGBA, GL_FLOAT, zero);
-}
-
 void want(gl::Texture& texture, bool wanted, int width, int height) {
   const bool fits = texture && texture.options().width == width &&
                     texture.options().height == height;
@@ -34,61 +25,7 @@ void want(gl::Texture& texture, bool wanted, int width, int height) {
   if (wanted) texture = gl::Texture({GL_TEXTURE_2D, GL_RGBA32F, width, height, 1, 1});
 }
 
-// Rewrites `buffer`, larger if it must be.
-void store(gl::Buffer& buffer, const void* data, size_t bytes) {
-  if (buffer.bytes() < int64_t(bytes) || !buffer) buffer = gl::Buffer(int64_t(bytes));
-  buffer.write(0, int64_t(bytes), data);
-}
-
 }  // namespace
-
-gl::ProgramSource direct_light_program(const LightOptions& options) {
-  gl::ProgramSource source;
-  source.name = "direct light";
-  source.stages = {{GL_COMPUTE_SHADER, "realtime/direct_light.comp"}};
-  source.defines = {fmt::format("SHADOWS {}", int(options.shadows)),
-                    fmt::format("FILTERED_PENUMBRAE {}", int(options.filtered_penumbrae)),
-                    fmt::format("SPECULAR_RAYS {}", int(options.specular_rays))};
-  options.surfaces.add_defines(source);
-  return source;
-}
-
-gl::ProgramSource compose_program(const ComposeOptions& options, const film::Film& film) {
-  gl::ProgramSource source;
-  source.name = "compose";
-  source.stages = {{GL_COMPUTE_SHADER, "realtime/compose.comp"}};
-  source.defines = {fmt::format("LAMPS {}", int(options.lamps)),
-                    fmt::format("BACKGROUND {}", int(options.background)),
-                    fmt::format("WORLD_LIGHT {}", int(options.world_light)),
-                    fmt::format("TRANSPARENT_FILM {}", int(options.transparent_film)),
-                    fmt::format("OCCLUSION {}", int(options.occlusion)),
-                    fmt::format("DEEP_SHADOWS {}", int(options.deep_shadows)),
-                    fmt::format("PASS_OCCLUSION {}", int(options.pass_occlusion)),
-                    fmt::format("SPECULAR_RAYS {}", int(options.specular_rays)),
-                    fmt::format("RADIANCE_CACHE {}", int(options.cache.has_value())),
-                    fmt::format("SCALED {}", int(options.cache && options.cache->scaled)),
-                    fmt::format("AMBIENT {}", int(options.cache || options.world_light))};
-  if (options.cache) options.cache->add_defines(source);
-  options.surfaces.add_defines(source);
-  film.add_defines(source);
-  return source;
-}
-
-gl::ProgramSource depth_program(const film::Film& film) {
-  gl::ProgramSource source;
-  source.name = "depth";
-  source.stages = {{GL_COMPUTE_SHADER, "realtime/depth.comp"}};
-  film.add_defines(source);
-  return source;
-}
-
-gl::ProgramSource background_program(const gpu_scene::GpuShading& world) {
-  gl::ProgramSource source;
-  source.name = "world background";
-  source.stages = {{GL_COMPUTE_SHADER, "realtime/background.comp"}};
-  gpu_scene::GpuScene::add_world(world, source);
-  return source;
-}
 
 void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
                      const Settings& settings, bool single, const scene::Scene& scene,
@@ -145,10 +82,22 @@ void Realtime::begin(const gpu_scene::Camera& camera, const plan::Effects& plan,
     world_.update(scene.world(), gpu, programs_);
   }
   if (triangles)
-    cache_.begin({camera, plan, settings.cache, settings.seed, scene, gpu, *triangles, view_block_, world_,
-                  settings.follows});
+    cache_.begin({camera, plan, settings.cache, settings.seed, scene, gpu, world_, settings.follows});
   else
     cache_.release();
+  if (!cache_.runs()) begin_occlusion();
+}
+
+void Realtime::place_by(const shared::View& view, const gpu_scene::GpuScene& gpu) {
+  std::vector<rasterize::Slab> slabs;
+  if (cascades_ || cache_.looks_far()) {
+    gl::PassScope scope(timer_, cascades_ ? "sun_cascades" : "radiance_cache_distance");
+    slabs = rasterize::visible_slabs(g_buffer_, bounds_, glm::inverse(camera_.world_to_camera)[3], programs_);
+  }
+  if (cascades_) find_cascades(slabs, view);
+  if (!cache_.runs()) return;
+  cache_.place(rasterize::median_distance(slabs), *triangles_, gpu, view_block_);
+  view_block_.set(view);
   begin_occlusion();
 }
 
@@ -209,7 +158,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   stop_if(cancelled);
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
-  if (cascades_ && index == 0) find_cascades(view);
+  if (index == 0) place_by(view, gpu);
   if (lights_cache) {
     cache_.see(g_buffer_, glm::dvec3(glm::vec3(view.world_origin)));
     cache_.begin_lamps();
@@ -262,7 +211,7 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
   g_buffer_.rasterize(gpu, programs_, timer_);
   g_buffer_.shade(gpu, programs_, timer_);
   stop_if(cancelled);
-  if (cascades_) find_cascades(view);
+  place_by(view, gpu);
   if (!undecided() && !cache_.runs()) return;
   const rasterize::LightSet set =
       lamps_ ? place(0, view, gpu, lights_, placement_of_lamps()) : rasterize::LightSet{};
@@ -290,36 +239,6 @@ void Realtime::choose_views(uint32_t index, const shared::View& view,
   const auto sample = occlusion_sample(index, view, lights, gpu);
   for (ambient_occlusion::AmbientOcclusion* occlusion : {&occlusion_, &pass_occlusion_})
     if (occlusion->undecided()) occlusion->choose(sample);
-}
-
-void Realtime::light_cache(const rasterize::LightBatch& batch, const shared::View& view) {
-  cache_.add_lamps({.origin = glm::dvec3(glm::vec3(view.world_origin)),
-                    .shadows = shadows_,
-                    .first = batch.first_light,
-                    .count = batch.light_count,
-                    .lights = lights_buffer_,
-                    .faces = faces_buffer_,
-                    .bind_maps = [this](int unit) { shadow_maps_.bind(unit); }});
-}
-
-void Realtime::gather_cache(const shared::View& view, const gpu_scene::GpuScene& gpu,
-                            const std::atomic<bool>& cancelled) {
-  if (cache_.reflective()) {
-    rasterize::Placement placement = placement_of_lamps();
-    placement.shadows = true;  // since maps are drawn by the views of shadow maps
-    placement.sun_cascades.clear();
-    placement.resolution = settings_.cache.rsm_resolution;
-    std::vector<scene::Light> lamps = lights_;
-    for (scene::Light& lamp : lamps) lamp.cast_shadow = true;
-    cache_.reflect_lamps({.set = place(0, view, gpu, lamps, placement),
-                          .origin = placement.camera_origin,
-                          .camera = view,
-                          .gpu = gpu,
-                          .view_block = view_block_,
-                          .cancelled = cancelled});
-    view_block_.set(view);
-  }
-  cache_.gather();
 }
 
 ambient_occlusion::AmbientOcclusion::Sample Realtime::occlusion_sample(
@@ -431,106 +350,6 @@ void Realtime::write_depth(const gpu_scene::GpuScene& gpu, film::Film& film) {
 
 void Realtime::dispatch_pixels() const {
   glDispatchCompute(GLuint(camera_.width + 7) / 8, GLuint(camera_.height + 7) / 8, 1);
-}
-
-void Realtime::find_cascades(const shared::View& view) {
-  gl::PassScope scope(timer_, "sun_cascades");
-  const glm::dvec3 origin = glm::inverse(camera_.world_to_camera)[3];
-  std::vector<scene::Bounds> cascades = rasterize::choose_cascades(
-      rasterize::visible_slabs(g_buffer_, bounds_, origin, programs_), bounds_, view.filtering.y,
-      camera_.perspective(), settings_.shadows.resolution);
-  if (cascades != sun_cascades_) shadow_revision_ = -1;
-  sun_cascades_ = std::move(cascades);
-}
-
-rasterize::LightSet Realtime::place(uint32_t index, const shared::View& view,
-                                    const gpu_scene::GpuScene& gpu,
-                                    const std::vector<scene::Light>& lamps,
-                                    const rasterize::Placement& placement) {
-  std::vector<rasterize::LightSamplePoint> points;
-  if (soft_)
-    for (size_t i = 0; i < lights_.size(); ++i) {
-      const uint32_t dimension = kLampDimension + 2 * uint32_t(i);
-      const glm::vec2 u = film::sample_point(index, settings_.seed, dimension);
-      const glm::vec2 s = film::sample_point(index, settings_.seed, dimension + 1);
-      points.push_back({u.x, u.y, lights_[i].extended() ? s - 0.5f : glm::vec2(0)});
-    }
-  std::vector<rasterize::MeshLight> mesh_lights;
-  if (!emitters_.empty()) {
-    gl::PassScope scope(timer_, "emissive_light");
-    mesh_lights = emitters_.sample(index, {gpu, programs_, view_block_, view});
-    view_block_.set(view);
-  }
-  return rasterize::place_lights(lamps, points, mesh_lights, placement);
-}
-
-rasterize::Placement Realtime::placement_of_lamps() const {
-  return {.shadows = shadows_,
-          .bounds = bounds_,
-          .sun_cascades = cascades_ ? sun_cascades_ : std::vector<scene::Bounds>{},
-          .camera_origin = glm::inverse(camera_.world_to_camera)[3],
-          .resolution = settings_.shadows.resolution,
-          .layers = rasterize::ShadowMaps::layer_limit(settings_.shadows, device_)};
-}
-
-void Realtime::store_lights(const rasterize::LightSet& set) {
-  std::vector<shared::Light> lights;
-  for (const rasterize::PlacedLight& placed : set.lights) lights.push_back(placed.light);
-  store(lights_buffer_, lights.data(), lights.size() * sizeof(shared::Light));
-  store(faces_buffer_, set.faces.data(), set.faces.size() * sizeof(shared::ShadowFace));
-}
-
-void Realtime::add_lamps(uint32_t index, const shared::View& view,
-                         const gpu_scene::GpuScene& gpu, bool lights_cache,
-                         const std::atomic<bool>& cancelled) {
-  const rasterize::LightSet set = place(index, view, gpu, lights_, placement_of_lamps());
-  store_lights(set);
-  clear(diffuse_light_);
-  if (surfaces_.glossy) clear(glossy_light_);
-
-  // Maps hold for the next sample and frame unless a lamp's point or an alpha threshold moves on,
-  // or another batch has overwritten them.
-  const bool lasting = !soft_ && (!alpha_ || single_ || filtered_) && set.batches.size() <= 1 &&
-                       (emitters_.empty() || single_);
-  const bool keep = lasting && shadow_revision_ == gpu.shadow_revision();
-  shadow_revision_ = lasting ? gpu.shadow_revision() : -1;
-  if (set.batches.empty()) find_occlusion(index, view, nullptr, gpu, cancelled);
-  for (const rasterize::LightBatch& batch : set.batches) {
-    if (shadows_) draw_shadow_maps(set, batch, view, gpu, lasting, keep);
-    stop_if(cancelled);
-    if (&batch == &set.batches.front())
-      find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
-    if (lights_cache) light_cache(batch, view);
-    gl::PassScope scope(timer_, "direct_light");
-    const bool rays = specular_rays_.runs() && emissive_light_;
-    programs_.get(direct_light_program({shadows_, filtered_, rays, surfaces_})).use();
-    g_buffer_.bind_bins();
-    g_buffer_.bind_surfaces();
-    if (shadows_) shadow_maps_.bind(13);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, lights_buffer_.id());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, faces_buffer_.id());
-    if (rays) specular_rays_.direct().bind(6);
-    diffuse_light_.bind(0);
-    diffuse_light_.bind_image(0, GL_WRITE_ONLY);
-    if (surfaces_.glossy) glossy_light_.bind(1);
-    if (surfaces_.glossy) glossy_light_.bind_image(1, GL_WRITE_ONLY);
-    glUniform1ui(2, batch.first_light);
-    glUniform1ui(3, batch.light_count);
-    g_buffer_.dispatch_surfaces();
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    if (specular_rays_.runs())
-      specular_rays_.add_lamps(batch.first_light, batch.light_count, {shadows_, filtered_});
-    stop_if(cancelled);
-  }
-}
-
-void Realtime::draw_shadow_maps(const rasterize::LightSet& set, const rasterize::LightBatch& batch,
-                                const shared::View& view, const gpu_scene::GpuScene& gpu,
-                                bool lasting, bool keep) {
-  shared::View from = view;
-  if (lasting) from.size.z = 0;  // alpha thresholds are those of the picture's first sample
-  shadow_maps_.render(set, batch, settings_.shadows, from, gpu, programs_, timer_, view_block_, keep);
-  view_block_.set(view);
 }
 
 }  // namespace panoptes::realtime

@@ -96,7 +96,9 @@ class Realtime {
   // Where sample `index` looks through the pixels, about their centres; what the camera sees there.
   glm::dvec2 sample_jitter(uint32_t index) const;
   shared::View sample_view(uint32_t index, uint32_t sharing) const;
-  void find_cascades(const shared::View& view);
+  // What depends on where the picture's first sample, in the G-buffer now, sees something.
+  void place_by(const shared::View& view, const gpu_scene::GpuScene& gpu);
+  void find_cascades(const std::vector<rasterize::Slab>& slabs, const shared::View& view);
   // The scene's lamps, or others in their stead, and glowing surfaces in a sample.
   rasterize::LightSet place(uint32_t index, const shared::View& view,
                             const gpu_scene::GpuScene& gpu, const std::vector<scene::Light>& lamps,

@@ -41,6 +41,13 @@ TEST(Cascades, SmallScenesAndEmptyViewsNeedNone) {
   EXPECT_TRUE(choose_cascades(floor_seen_from(1, 1000), cube(500), 0.5, false, kResolution).empty());
 }
 
+TEST(Cascades, HalfOfThePixelsAreNearerThanTheMedianDistance) {
+  EXPECT_EQ(rasterize::median_distance({}), 0);
+  EXPECT_EQ(rasterize::median_distance({{1, cube(1), 50}, {2, cube(1), 50}}), 2);
+  EXPECT_NEAR(rasterize::median_distance({{1, cube(1), 10}, {8, cube(1), 100}, {64, cube(1), 10}}), 8 * std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(rasterize::median_distance({{4, cube(1), 1}}), 4 * std::sqrt(2.0), 1e-9);
+}
+
 TEST(Cascades, LargeScenesGetMapsThatResolveWhatIsSeen) {
   const std::vector<Slab> slabs = floor_seen_from(1, 1024);
   const auto cascades = choose_cascades(slabs, cube(5000), kPixel, true, kResolution);

@@ -63,7 +63,9 @@ TEST(Placement, OneVolumeHoldsTheSceneAndACellAround) {
       EXPECT_GE(margin(grids[0], bounds), 0.99);
       EXPECT_LE(longest(grids[0]), resolution ? resolution : 32);
       // Not more than an eighth of an octave coarser than what was asked for.
-      if (resolution >= 16) EXPECT_GE(longest(grids[0]), int(0.9 * resolution) - 2);
+      if (resolution >= 16) {
+        EXPECT_GE(longest(grids[0]), int(0.9 * resolution) - 2);
+      }
     }
 }
 
@@ -99,7 +101,9 @@ TEST(Placement, CascadesAreTwiceAsWideEachAndAboutTheCamera) {
     const std::vector<Grid> grids = choose_grids(bounds, camera_at(eye), with(24, cascades));
     ASSERT_EQ(int(grids.size()), cascades);
     for (size_t i = 0; i < grids.size(); ++i) {
-      if (i > 0) EXPECT_DOUBLE_EQ(grids[i].cell, 2 * grids[i - 1].cell);
+      if (i > 0) {
+        EXPECT_DOUBLE_EQ(grids[i].cell, 2 * grids[i - 1].cell);
+      }
       EXPECT_LE(longest(grids[i]), 24);
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_LT(grids[i].low[axis], eye[axis]);
@@ -146,11 +150,23 @@ TEST(Placement, DetailComesBeforeTheRestOfAVastScene) {
   const std::vector<Grid> grids = choose_grids(box_of({-5000, -5000, -20}, {5000, 5000, 300}),
                                                camera_at({10, 20, 1.7}), Settings(), 10);
   ASSERT_EQ(int(grids.size()), radiance_cache::kMostCascades);
-  EXPECT_LE(grids[0].cell, 2.5);
-  EXPECT_GE(grids[0].cell, 1.2);
+  // The picture's longer side shows 11.3 m at this distance.
+  EXPECT_LE(grids[0].cell, 0.15 * 11.3);
+  EXPECT_GE(grids[0].cell, 0.07 * 11.3);
   // One octave more than cascades bring goes into the cells, and the scene is held.
   const scene::Bounds town = box_of({-120, -120, -20}, {120, 120, 30});
   EXPECT_GE(margin(choose_grids(town, camera_at({}), Settings(), 12).back(), town), 0.99);
+}
+
+TEST(Placement, CascadesLieAboutWhatALongLensLooksAt) {
+  const scene::Bounds bounds = box_of({-500, -500, 0}, {500, 500, 40});
+  const glm::dvec3 eye(0, -300, 20), target(0, 0, 20);
+  for (const gpu_scene::Camera& camera :
+       {perspective(eye, target, 0.02, 64, 48), orthographic(eye, target, 5, 64, 48)}) {
+    const std::vector<Grid> grids = choose_grids(bounds, camera, Settings(), 300);
+    EXPECT_LE(grids[0].cell, 2);
+    EXPECT_GT(margin(grids[0], box_of(target - 2.0, target + 2.0)), 0);
+  }
 }
 
 TEST(Placement, IsFiniteForEveryInput) {
