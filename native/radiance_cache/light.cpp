@@ -37,6 +37,7 @@ void RadianceCache::add_lamps(const Lamps& lamps) {
   glUniform1ui(3, lamps.count);
   glUniform3f(4, offset.x, offset.y, offset.z);
   glUniform1f(5, kShadowsBefore * float(voxel()));
+  glUniform1f(6, lamps.share);
   gl::dispatch(volume_.solid(), GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

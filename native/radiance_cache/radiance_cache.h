@@ -88,6 +88,7 @@ class RadianceCache {
   struct Lamps {
     glm::dvec3 origin;
     bool shadows = false;
+    float share = 1;  // of their light, where several points stand for each
     uint32_t first = 0, count = 0;
     const gl::Buffer& lights;
     const gl::Buffer& faces;

@@ -3,9 +3,14 @@
 #include "realtime/realtime.h"
 #include "realtime/sample_dimensions.h"
 
+#include <algorithm>
+
 namespace panoptes::realtime {
 
 namespace {
+
+// The points of each lamp of a size that light the cache: more would hardly change its light.
+constexpr uint32_t kCachePoints = 8;
 
 void clear(const gl::Texture& texture) {
   const float zero[4] = {0, 0, 0, 0};
@@ -64,8 +69,27 @@ void Realtime::store_lights(const rasterize::LightSet& set) {
   store(faces_buffer_, set.faces.data(), set.faces.size() * sizeof(shared::ShadowFace));
 }
 
+uint32_t Realtime::cache_points(uint32_t sharing) const {
+  const bool many = soft_ || (!emitters_.empty() && !single_);
+  // Frames that follow each other show something first.
+  return cache_.runs() && many && !settings_.follows ? std::min(sharing, kCachePoints) : 1;
+}
+
+void Realtime::light_cache_further(uint32_t points, const shared::View& view, const gpu_scene::GpuScene& gpu,
+                                   const std::atomic<bool>& cancelled) {
+  for (uint32_t index = 1; index < points; ++index) {
+    const rasterize::LightSet set = place(index, view, gpu, lights_, placement_of_lamps());
+    store_lights(set);
+    for (const rasterize::LightBatch& batch : set.batches) {
+      if (shadows_) draw_shadow_maps(set, batch, view, gpu, false, false);
+      stop_if(cancelled);
+      light_cache(batch, view, points);
+    }
+  }
+}
+
 void Realtime::add_lamps(uint32_t index, const shared::View& view,
-                         const gpu_scene::GpuScene& gpu, bool lights_cache,
+                         const gpu_scene::GpuScene& gpu, uint32_t points,
                          const std::atomic<bool>& cancelled) {
   const rasterize::LightSet set = place(index, view, gpu, lights_, placement_of_lamps());
   store_lights(set);
@@ -84,7 +108,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
     stop_if(cancelled);
     if (&batch == &set.batches.front())
       find_occlusion(index, view, shadows_ ? &set : nullptr, gpu, cancelled);
-    if (lights_cache) light_cache(batch, view);
+    if (points > 0) light_cache(batch, view, points);
     gl::PassScope scope(timer_, "direct_light");
     const bool rays = specular_rays_.runs() && emissive_light_;
     programs_.get(direct_light_program({shadows_, filtered_, rays, surfaces_})).use();
@@ -106,6 +130,7 @@ void Realtime::add_lamps(uint32_t index, const shared::View& view,
       specular_rays_.add_lamps(batch.first_light, batch.light_count, {shadows_, filtered_});
     stop_if(cancelled);
   }
+  light_cache_further(points, view, gpu, cancelled);
 }
 
 void Realtime::draw_shadow_maps(const rasterize::LightSet& set, const rasterize::LightBatch& batch,
@@ -117,9 +142,10 @@ void Realtime::draw_shadow_maps(const rasterize::LightSet& set, const rasterize:
   view_block_.set(view);
 }
 
-void Realtime::light_cache(const rasterize::LightBatch& batch, const shared::View& view) {
+void Realtime::light_cache(const rasterize::LightBatch& batch, const shared::View& view, uint32_t points) {
   cache_.add_lamps({.origin = glm::dvec3(glm::vec3(view.world_origin)),
                     .shadows = shadows_,
+                    .share = 1.0f / float(points),
                     .first = batch.first_light,
                     .count = batch.light_count,
                     .lights = lights_buffer_,

@@ -165,7 +165,7 @@ void Realtime::render_sample(uint32_t index, uint32_t first, uint32_t sharing,
   }
   if (specular_rays_.runs() && !shows_occlusion() && !shows_cache()) trace_specular(index, view, around, cancelled);
   if (lamps_)
-    add_lamps(index, view, gpu, lights_cache, cancelled);
+    add_lamps(index, view, gpu, lights_cache ? cache_points(sharing) : 0, cancelled);
   else
     find_occlusion(index, view, nullptr, gpu, cancelled);
   if (lights_cache) gather_cache(view, gpu, cancelled);
@@ -225,8 +225,9 @@ void Realtime::look_at_first_sample(uint32_t sharing, const gpu_scene::GpuScene&
     stop_if(cancelled);
     if (shadows_ && &batch == &set.batches.front()) choose_views(0, view, &set, gpu);
     if (!cache_.runs()) return;
-    light_cache(batch, view);
+    light_cache(batch, view, cache_points(sharing));
   }
+  light_cache_further(cache_points(sharing), view, gpu, cancelled);
   gather_cache(view, gpu, cancelled);
 }
 

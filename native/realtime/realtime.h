@@ -118,7 +118,13 @@ class Realtime {
   // While the maps of the first batch of `lights` (none: no lamps) are there.
   void find_occlusion(uint32_t index, const shared::View& view, const rasterize::LightSet* lights,
                       const gpu_scene::GpuScene& gpu, const std::atomic<bool>& cancelled);
-  void light_cache(const rasterize::LightBatch& batch, const shared::View& view);
+  // How many points of each lamp light the cache in a picture of so many samples.
+  uint32_t cache_points(uint32_t sharing) const;
+  // By this point of each lamp, one of so many.
+  void light_cache(const rasterize::LightBatch& batch, const shared::View& view, uint32_t points);
+  // By the points of the samples that follow the first.
+  void light_cache_further(uint32_t points, const shared::View& view, const gpu_scene::GpuScene& gpu,
+                           const std::atomic<bool>& cancelled);
   // Once all lamps have lit the cache.
   void gather_cache(const shared::View& view, const gpu_scene::GpuScene& gpu,
                     const std::atomic<bool>& cancelled);
@@ -144,8 +150,9 @@ class Realtime {
   void bind_ambient(const std::optional<radiance_cache::LookUpOptions>& cache,
                     const gpu_scene::GpuScene& gpu, const shared::View& view);
   void compose(const gpu_scene::GpuScene& gpu, const shared::View& view, film::Film& film);
+  // The cache is lit by so many points of each lamp; 0: not in this sample.
   void add_lamps(uint32_t index, const shared::View& view, const gpu_scene::GpuScene& gpu,
-                 bool lights_cache, const std::atomic<bool>& cancelled);
+                 uint32_t points, const std::atomic<bool>& cancelled);
 
   gl::DeviceInfo device_;
   gl::ProgramCache& programs_;

@@ -15,6 +15,7 @@ layout(location = 2) uniform uint first_light;
 layout(location = 3) uniform uint light_count;
 layout(location = 4) uniform vec3 offset;  // from positions of surfels to those of lamps
 layout(location = 5) uniform float before; // how far before a surface its shadow is looked up, m
+layout(location = 6) uniform float share;  // of their light
 
 void main() {
   uint number = invocation();
@@ -36,6 +37,6 @@ void main() {
     front += cosine > 0.0 ? irradiance : vec3(0.0);
     back += cosine > 0.0 ? vec3(0.0) : irradiance;
   }
-  direct[2u * number].rgb += front;
-  direct[2u * number + 1u].rgb += back;
+  direct[2u * number].rgb += share * front;
+  direct[2u * number + 1u].rgb += share * back;
 }
