@@ -148,13 +148,13 @@ void Engine::run(const gl::ContextOptions& options, std::function<void(std::stri
       if (!job) images_waiting_ = false;
     }
     if (!job) {
-      if (renderer->upload_ahead(scene_, scene_mutex_)) {
+      if (renderer->upload_ahead(scene_)) {
         std::lock_guard lock(queue_mutex_);
         images_waiting_ = true;  // there may be more
       }
       continue;
     }
-    renderer->render(*job, scene_, scene_mutex_);
+    renderer->render(*job, scene_);
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/request.h"
+#include "engine/shared_scene.h"
 #include "film/pieces.h"
 #include "gl/context.h"
 #include "scene/scene.h"
@@ -74,12 +75,18 @@ class Engine {
   // Cancels what runs, ends the thread. Idempotent; every later call throws Error.
   void close();
 
-  // Runs `change` on the scene, between frames' uploads.
+  // Runs `change` on the scene, between frames' uploads, and waits for them.
   template <class F>
   auto edit(F&& change) {
     require_open();
-    std::lock_guard lock(scene_mutex_);
-    return change(scene_);
+    const SharedScene::Hold held = scene_.hold();
+    return change(*held);
+  }
+  // The same without waiting: while a frame uploads or compiles, `change` happens before the next.
+  // What makes no sense is thrown as an Error here or fails the next frame.
+  void post(SharedScene::Change change) {
+    require_open();
+    scene_.post(std::move(change));
   }
 
   // Lets the render thread upload images while it has nothing to render, so that images that are
@@ -95,8 +102,7 @@ class Engine {
   void run(const gl::ContextOptions& options, std::function<void(std::string)> started);
 
   gl::DeviceInfo device_;
-  std::mutex scene_mutex_;
-  scene::Scene scene_;
+  SharedScene scene_;
   std::mutex queue_mutex_;
   std::condition_variable queue_condition_;
   std::deque<std::shared_ptr<Job>> queue_;

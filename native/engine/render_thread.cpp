@@ -66,10 +66,10 @@ RenderThread::RenderThread(const gl::ContextOptions& options)
       realtime_(context_.device(), programs_, timer_), traced_(context_.device()),
       path_tracer_(context_.device(), programs_, timer_) {}
 
-void RenderThread::render(Job& job, scene::Scene& scene, std::mutex& mutex) {
+void RenderThread::render(Job& job, SharedScene& scene) {
   std::string error;
   try {
-    if (!job.cancelled()) render_frame(job, scene, mutex);
+    if (!job.cancelled()) render_frame(job, scene);
   } catch (const Cancelled&) {
   } catch (const std::bad_alloc&) {
     error = "the computer ran out of memory: lower the resolution or simplify the scene";
@@ -79,10 +79,9 @@ void RenderThread::render(Job& job, scene::Scene& scene, std::mutex& mutex) {
   job.end(std::move(error));
 }
 
-bool RenderThread::upload_ahead(scene::Scene& scene, std::mutex& mutex) {
-  std::lock_guard lock(mutex);
+bool RenderThread::upload_ahead(SharedScene& scene) {
   try {
-    return gpu_scene_.upload_ahead(scene);
+    return gpu_scene_.upload_ahead(*scene.hold());
   } catch (const std::exception&) {
     return false;
   }
@@ -164,7 +163,7 @@ void RenderThread::render_sample(const Job& job, uint32_t index) {
   traced_.note_rays(int64_t(request.camera.width) * request.camera.height, ms_since(start));
 }
 
-void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex) {
+void RenderThread::render_frame(Job& job, SharedScene& shared) {
   const Clock::time_point start = Clock::now();
   const RenderRequest& request = job.request();
   timer_.reset();
@@ -178,7 +177,8 @@ void RenderThread::render_frame(Job& job, scene::Scene& scene, std::mutex& mutex
   std::vector<std::string> warnings;
   bool traces = false;
   {
-    std::lock_guard lock(mutex);
+    const SharedScene::Hold held = shared.hold();
+    scene::Scene& scene = *held;
     gpu_scene_.update(scene);
     // Ranges that are to be merged have the plan of a picture of many samples, whichever they are.
     const int samples = request.pieces    ? std::numeric_limits<int>::max()

@@ -11,8 +11,6 @@
 #include "ray_picture/ray_picture.h"
 #include "realtime/realtime.h"
 
-#include <mutex>
-
 namespace panoptes::engine {
 
 class RenderThread {
@@ -21,13 +19,13 @@ class RenderThread {
 
   const gl::DeviceInfo& device() const { return context_.device(); }
 
-  // Renders the job and ends it, whatever happens. Holds `mutex` only while the scene is uploaded.
-  void render(Job& job, scene::Scene& scene, std::mutex& mutex);
+  // Renders the job and ends it, whatever happens. Holds the scene only while it is uploaded.
+  void render(Job& job, SharedScene& scene);
   // Uploads an image that waits, if there is one; what fails is left for the frame that needs it.
-  bool upload_ahead(scene::Scene& scene, std::mutex& mutex);
+  bool upload_ahead(SharedScene& scene);
 
  private:
-  void render_frame(Job& job, scene::Scene& scene, std::mutex& mutex);
+  void render_frame(Job& job, SharedScene& shared);
   // Prepares for a frame that shows the scene, and frees what rays need.
   void begin_realtime(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
   void begin_paths(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);

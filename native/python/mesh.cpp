@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "python/mesh_pointers.h"
+#include "python/post.h"
 
 #include <bit>
 #include <cstring>
@@ -128,7 +129,7 @@ std::optional<MeshHandle> mesh_of_memory(
 
 void put(Engine& engine, Id id, scene::Mesh mesh) {
   py::gil_scoped_release release;
-  engine.edit([&](scene::Scene& scene) { scene.set_mesh(id, std::move(mesh)); });
+  post(engine, [id, mesh = std::move(mesh)](scene::Scene& scene) mutable { scene.set_mesh(id, std::move(mesh)); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "image_io/pieces.h"
 #include "python/convert.h"
 #include "python/mesh.h"
+#include "python/post.h"
 
 namespace panoptes::python {
 
@@ -18,11 +19,11 @@ using engine::Job;
 using scene::Id;
 using scene::Scene;
 
-// Runs `change` on the scene without the GIL.
+// Runs `change`, which owns all that it needs, on the scene, without the GIL and without waiting.
 template <class F>
 void edit(Engine& engine, F&& change) {
   py::gil_scoped_release release;
-  engine.edit(std::forward<F>(change));
+  post(engine, std::forward<F>(change));
 }
 
 std::vector<glm::mat4> matrices_of(const Array<float>& array) {
@@ -50,21 +51,23 @@ void set_instances(Engine& engine, const Array<int64_t>& meshes, const Array<flo
     if (scales) instances[i].indirect_scale = {scales->data()[i * 2], scales->data()[i * 2 + 1]};
   }
   std::vector<Id> table(material_table.data(), material_table.data() + material_table.size());
-  edit(engine, [&](Scene& scene) { scene.set_instances(std::move(instances), std::move(table)); });
+  edit(engine, [instances = std::move(instances), table = std::move(table)](Scene& scene) mutable {
+    scene.set_instances(std::move(instances), std::move(table));
+  });
 }
 
 void set_instance_matrices(Engine& engine, const Array<int>& indices,
                            const Array<float>& matrices) {
-  const std::vector<glm::mat4> places = matrices_of(matrices);
-  const std::vector<int> list(indices.data(), indices.data() + indices.size());
-  edit(engine, [&](Scene& scene) { scene.set_instance_matrices(list, places); });
+  std::vector<glm::mat4> places = matrices_of(matrices);
+  std::vector<int> list(indices.data(), indices.data() + indices.size());
+  edit(engine, [list = std::move(list), places = std::move(places)](Scene& scene) { scene.set_instance_matrices(list, places); });
 }
 
 void set_instance_scales(Engine& engine, const Array<int>& indices, const Array<float>& scales) {
   const auto values = rows<glm::vec2>(scales, "scales", 2);
-  const std::vector<glm::vec2> copied(values.begin(), values.end());
-  const std::vector<int> list(indices.data(), indices.data() + indices.size());
-  edit(engine, [&](Scene& scene) { scene.set_instance_scales(list, copied); });
+  std::vector<glm::vec2> copied(values.begin(), values.end());
+  std::vector<int> list(indices.data(), indices.data() + indices.size());
+  edit(engine, [list = std::move(list), copied = std::move(copied)](Scene& scene) { scene.set_instance_scales(list, copied); });
 }
 
 void set_material(Engine& engine, Id id, const std::string& name, const std::string& code,
@@ -81,14 +84,14 @@ void set_material(Engine& engine, Id id, const std::string& name, const std::str
     material.facts.least_roughness = facts["least_roughness"].cast<float>();
   if (facts.contains("attributes"))
     material.attributes = facts["attributes"].cast<std::vector<std::string>>();
-  edit(engine, [&](Scene& scene) { scene.set_material(id, std::move(material)); });
+  edit(engine, [id, material = std::move(material)](Scene& scene) mutable { scene.set_material(id, std::move(material)); });
 }
 
 void set_world(Engine& engine, const std::string& code, const Array<float>& values,
                const py::list& textures, const std::optional<std::array<float, 3>>& constant) {
   scene::World world{code, params(values), texture_uses(textures), std::nullopt};
   if (constant) world.constant = glm::vec3((*constant)[0], (*constant)[1], (*constant)[2]);
-  edit(engine, [&](Scene& scene) { scene.set_world(std::move(world)); });
+  edit(engine, [world = std::move(world)](Scene& scene) mutable { scene.set_world(std::move(world)); });
 }
 
 // T: uint8_t or float; bytes stay bytes.
@@ -101,7 +104,7 @@ void set_image_pixels(Engine& engine, Id id, const std::string& name, const py::
   scene::Image image = scene::make_image(name, int(values.shape(1)), int(values.shape(0)),
                                          std::span(values.data(), size_t(values.size())), srgb,
                                          alpha_mode(alpha));
-  edit(engine, [&](Scene& scene) { scene.set_image(id, std::move(image)); });
+  edit(engine, [id, image = std::move(image)](Scene& scene) mutable { scene.set_image(id, std::move(image)); });
 }
 
 py::array read_pass(const Job& job, const std::string& name) {
@@ -203,7 +206,7 @@ py::class_<Engine> bind_engine(py::module_& m) {
       .def_property_readonly("device", [](const Engine& e) { return e.device().renderer; })
       .def("close", &Engine::close, no_gil, "Stops the render thread. Idempotent.")
       .def("counters", [](const Engine&) { return counters(); })
-      .def("remove_mesh", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_mesh(id); }); })
+      .def("remove_mesh", [](Engine& e, Id id) { edit(e, [id](Scene& s) { s.remove_mesh(id); }); })
       .def("set_instances", &set_instances, py::arg("mesh_ids"), py::arg("matrices"),
            py::arg("material_offsets"), py::arg("material_table"),
            py::arg("visibility") = py::none(), py::arg("indirect_scales") = py::none())
@@ -214,17 +217,19 @@ py::class_<Engine> bind_engine(py::module_& m) {
       .def("set_material_params",
            [](Engine& e, Id id, const Array<float>& values, float least_roughness) {
              std::vector<glm::vec4> list = params(values);
-             edit(e, [&](Scene& s) { s.set_material_params(id, std::move(list), least_roughness); });
+             edit(e, [id, list = std::move(list), least_roughness](Scene& s) mutable {
+               s.set_material_params(id, std::move(list), least_roughness);
+             });
            },
            py::arg("id"), py::arg("params"), py::arg("least_roughness") = 0.0f)
       .def("remove_material",
-           [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_material(id); }); })
+           [](Engine& e, Id id) { edit(e, [id](Scene& s) { s.remove_material(id); }); })
       .def("set_image_file",
            [](Engine& e, Id id, const std::string& name, const std::string& path, bool srgb,
               const std::string& alpha) {
              py::gil_scoped_release release;
              scene::Image image = image_io::load_file(name, path, srgb, alpha_mode(alpha));
-             e.edit([&](Scene& s) { s.set_image(id, std::move(image)); });
+             post(e, [id, image = std::move(image)](Scene& s) mutable { s.set_image(id, std::move(image)); });
              e.upload_images();
            })
       .def("set_image_encoded",
@@ -233,20 +238,20 @@ py::class_<Engine> bind_engine(py::module_& m) {
              auto copy = std::make_shared<const std::string>(data);
              py::gil_scoped_release release;
              scene::Image image = image_io::load_memory(name, copy, srgb, alpha_mode(alpha));
-             e.edit([&](Scene& s) { s.set_image(id, std::move(image)); });
+             post(e, [id, image = std::move(image)](Scene& s) mutable { s.set_image(id, std::move(image)); });
              e.upload_images();
            })
       .def("set_image_pixels", &set_image_pixels<uint8_t>, py::arg("id"), py::arg("name"),
            py::arg("pixels").noconvert(), py::arg("srgb"), py::arg("alpha"))
       .def("set_image_pixels", &set_image_pixels<float>, py::arg("id"), py::arg("name"),
            py::arg("pixels"), py::arg("srgb"), py::arg("alpha"))
-      .def("remove_image", [](Engine& e, Id id) { edit(e, [&](Scene& s) { s.remove_image(id); }); })
+      .def("remove_image", [](Engine& e, Id id) { edit(e, [id](Scene& s) { s.remove_image(id); }); })
       .def("set_lights",
            [](Engine& e, const py::list& list) {
              std::vector<scene::Light> lights;
              for (const auto& item : list)
                lights.push_back(light(py::reinterpret_borrow<py::dict>(item)));
-             edit(e, [&](Scene& s) { s.set_lights(std::move(lights)); });
+             edit(e, [lights = std::move(lights)](Scene& s) mutable { s.set_lights(std::move(lights)); });
            })
       .def("set_world", &set_world, py::arg("code"), py::arg("params"), py::arg("textures"),
            py::arg("constant") = py::none())
@@ -258,7 +263,8 @@ py::class_<Engine> bind_engine(py::module_& m) {
            })
       .def("write_snapshot", [](Engine& e, const std::string& path, const py::dict& dict) {
         const engine::RenderRequest r = request(dict);
-        edit(e, [&](Scene& s) { engine::write_snapshot(path, s, r); });
+        py::gil_scoped_release release;
+        e.edit([&](Scene& s) { engine::write_snapshot(path, s, r); });
       });
   return type;
 }

@@ -103,6 +103,53 @@ TEST(EngineJobs, EditsFromOtherThreadsAreSafe) {
   EXPECT_EQ(failures, 0);
 }
 
+TEST(EngineEdits, AreHandedOverWithoutWaitingForWhoHoldsTheScene) {
+  engine::Engine& engine = shared_engine();
+  set_scene(engine);
+  std::atomic<bool> held{false}, release{false};
+  std::thread holder([&] {
+    engine.edit([&](scene::Scene&) {
+      held = true;
+      while (!release) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+  });
+  while (!held) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // Were they to wait, nobody would ever let go.
+  engine.post([](scene::Scene& scene) { scene.set_lights({sun({0, 0, -1}, 1)}); });
+  engine.post([](scene::Scene& scene) { scene.set_lights({sun({0, 0, -1}, 2), sun({0, 0, -1}, 3)}); });
+  release = true;
+  holder.join();
+  // In their order, and before anybody sees the scene again.
+  EXPECT_EQ(engine.edit([](scene::Scene& scene) { return scene.lights().size(); }), 2u);
+}
+
+TEST(EngineEdits, ThatMakeNoSenseFailWhoComesNextOnce) {
+  engine::Engine& engine = shared_engine();
+  set_scene(engine);
+  const auto nonsense = [](scene::Scene& scene) {
+    scene.set_instance_matrices(std::vector<int>{1000000}, std::vector<glm::mat4>{glm::mat4(1)});
+  };
+  EXPECT_THROW(engine.post(nonsense), Error);
+  std::atomic<bool> held{false}, release{false};
+  std::thread holder([&] {
+    engine.edit([&](scene::Scene&) {
+      held = true;
+      while (!release) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+  });
+  while (!held) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  engine.post(nonsense);
+  engine.post([](scene::Scene& scene) { scene.set_lights({}); });
+  release = true;
+  holder.join();
+  const engine::RenderRequest r = request(still_life().camera, {});
+  const auto job = engine.render(r);
+  EXPECT_TRUE(job->wait(60));
+  EXPECT_THROW(job->check(), Error);
+  EXPECT_NO_THROW(render(r));
+  EXPECT_TRUE(engine.edit([](scene::Scene& scene) { return scene.lights().empty(); }));
+}
+
 TEST(EngineJobs, LiveOnesPublishAGrowingPicture) {
   engine::Engine& engine = shared_engine();
   set_scene(engine);
