@@ -34,9 +34,7 @@ class Changeover:
     def __init__(self, request, key):
         self.key = key
         self.pixels = None
-        first = request['samples'][0]
-        self._quick = Refinement(
-            {**request, 'method': 'realtime', 'samples': (first, first + QUICK_SAMPLES)}, key)
+        self._quick = Refinement(quick(request), key)
         self._paths = Refinement(request, key)
         self._begun = time.monotonic()
 
@@ -58,6 +56,11 @@ class Changeover:
     def warnings(self):
         """What both had to say."""
         return tuple(dict.fromkeys((*self._quick.warnings, *self._paths.warnings)))
+
+    @property
+    def first_seconds(self):
+        """How long the first sample took, 0 while there is none."""
+        return self._quick.first_seconds
 
     def is_complete(self):
         """Tell whether all samples are there, and the jobs have said all that they have to say."""
@@ -91,11 +94,6 @@ class Changeover:
         """Queue a job for what comes next."""
         self._now.start(engine)
 
-    def wait(self, seconds):
-        """Wait for the first sample that is shown, or as long as told."""
-        if self._now is self._quick:
-            self._quick.wait(seconds)
-
     def advance(self):
         """Fetch the newest samples; let go of a job that has ended. Raises what the job raised."""
         self._after(self._now.advance)
@@ -107,7 +105,7 @@ class Changeover:
     def _after(self, change):
         before = self.samples
         change()
-        if self.samples != before:
+        if self.samples != before or self.pixels is None:
             self._mix()
 
     def _mix(self):
@@ -129,7 +127,15 @@ class Changeover:
         return text if self._now is self._quick else f'Paths: {text[:1].lower()}{text[1:]}'
 
 
-def picture(request, key):
-    """Return the picture to refine for a request of a 3D View."""
+def picture(request, key, passing=False):
+    """Return the picture to refine for a request of a 3D View; a `passing` one is soon replaced."""
     staged = request['method'] == 'primitive' and 'debug_picture' not in request['settings']
-    return Changeover(request, key) if staged else Refinement(request, key)
+    if not staged:
+        return Refinement(request, key)
+    return Refinement(quick(request), key) if passing else Changeover(request, key)
+
+
+def quick(request):
+    """Return the request of the picture that Real-time shows before paths do."""
+    first = request['samples'][0]
+    return {**request, 'method': 'realtime', 'samples': (first, first + QUICK_SAMPLES)}

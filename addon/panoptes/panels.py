@@ -32,6 +32,7 @@ class PANOPTES_PT_sampling(EnginePanel, bpy.types.Panel):
         column.prop(settings, 'method')
         column.prop(settings, 'samples', text='Render Samples')
         column.prop(settings, 'viewport_samples')
+        column.prop(settings, 'viewport_budget')
 
 
 class PANOPTES_PT_sampling_limits(EnginePanel, bpy.types.Panel):

@@ -145,6 +145,11 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
     viewport_samples: IntProperty(
         name='Viewport Samples', description='Samples a pixel in the 3D View', default=16, min=1,
         max=1 << 20, soft_max=1024)
+    viewport_budget: FloatProperty(
+        name='Viewport Budget',
+        description='How long each picture may take while the 3D View or the scene moves; its resolution drops '
+                    'until it fits, and comes back at rest. 0 keeps the full resolution',
+        default=0.1, min=0.0, soft_max=1.0, subtype='TIME', unit='TIME_ABSOLUTE')
     seed: IntProperty(
         name='Seed', description='Another seed gives another pattern of noise', default=0, min=0)
     bounces: IntProperty(

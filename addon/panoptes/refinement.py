@@ -11,13 +11,18 @@ import time
 
 
 class Refinement:
-    """The picture of one request. `pixels` is float32[H, W, 4] as soon as `samples` is not 0."""
+    """The picture of one request.
+
+    `pixels` is float32[H, W, 4] as soon as `samples` is not 0; before, it may be a first look without
+    some effects. `first_seconds` is how long the first sample took, 0 while there is none.
+    """
 
     def __init__(self, request, key):
         self.key = key
         self.pixels = None
         self.samples = 0
         self.warnings = ()
+        self.first_seconds = 0.0
         self._request = request
         self._first, self._last = request['samples']
         # What earlier jobs have made.
@@ -59,7 +64,8 @@ class Refinement:
         """Tell whether `advance` would change something."""
         if self._job is None:
             return False
-        return self._job.wait(0.0) or self._base_samples + self._job.samples_ready() > self.samples
+        return (self._job.wait(0.0) or self._base_samples + self._job.samples_ready() > self.samples
+                or self.pixels is None and self._job.has_look())
 
     def start(self, engine):
         """Queue a job for the samples that are missing."""
@@ -67,12 +73,6 @@ class Refinement:
         samples = (self._first + self.samples, self._last)
         self._job = engine.render({**self._request, 'samples': samples})
         self._started = time.monotonic()
-
-    def wait(self, seconds):
-        """Wait for the first sample, or as long as told."""
-        while not self._job.samples_ready() and not self._job.wait(0.005):
-            if self.seconds_running() > seconds:
-                break
 
     def advance(self):
         """Fetch the newest picture; let go of a job that has ended. Raises what the job raised."""
@@ -86,6 +86,8 @@ class Refinement:
             self.warnings = tuple(job.stats().get('warnings', ()))
         if ended or self._base_samples + job.samples_ready() > self.samples:
             self._fetch(job)
+        elif self.pixels is None and job.has_look():
+            self.pixels = job.read('Combined')
 
     def interrupt(self):
         """Stop the job, keeping what it has made; `start` goes on from there."""
@@ -105,6 +107,7 @@ class Refinement:
         if self._base_samples:
             pixels = (self._base * self._base_samples + pixels * count) / total
         self.pixels, self.samples = pixels, total
+        self.first_seconds = self.first_seconds or job.first_sample_seconds()
 
     def cancel(self):
         """Stop the job if there is one; may be called from any thread."""

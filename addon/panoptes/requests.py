@@ -17,10 +17,13 @@ class BadRequest(RuntimeError):
     """The scene asks for something that cannot be rendered; the text says what and the remedy."""
 
 
-def method(settings):
-    """Return the method that is used for what `scene.panoptes` asks: 'realtime' or 'primitive'."""
-    paths = settings.method == 'primitive' and not debug_pictures.shows_technique(settings)
-    return 'primitive' if paths else 'realtime'
+def method(settings, viewport=False):
+    """Return the method that is used for what `scene.panoptes` asks: 'realtime' or 'primitive'.
+
+    Left to choose, a 3D View refines Real-time's pictures by paths.
+    """
+    paths = settings.method == 'primitive' or viewport and settings.method == 'auto'
+    return 'primitive' if paths and not debug_pictures.shows_technique(settings) else 'realtime'
 
 
 def _path_settings(scene):
@@ -86,7 +89,7 @@ def _filter_width(render, warn):
     return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
 
 
-def build(depsgraph, size, samples, view, projection, passes, warn, camera=None):
+def build(depsgraph, size, samples, view, projection, passes, warn, camera=None, viewport=False):
     """Return a request for a dependency graph's scene.
 
     `size` is (width, height) in pixels, `samples` (first, last exclusive), `view` world to camera
@@ -102,7 +105,7 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None)
         raise BadRequest("The camera's place or lens is not a number; clear its transform or choose "
                          'another camera.')
     scene = depsgraph.scene
-    used = method(scene.panoptes)
+    used = method(scene.panoptes, viewport)
     if scene.panoptes.method == 'fragment':
         warn('Fragment tracing does not work yet; Real-time is used instead.')
     settings = _settings(depsgraph, used, warn)
@@ -118,7 +121,7 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None)
         'projection': projection,
         'passes': list(passes),
         'method': used,
-        'lens': {} if camera is None else _lens(camera, scene.panoptes, warn),
+        'lens': {} if camera is None else _lens(camera, scene.panoptes, used, warn),
         'filter_width': _filter_width(scene.render, warn),
         'exposure': scene.panoptes.exposure,
         'force_all_effects': scene.panoptes.force_all_effects,
@@ -126,11 +129,11 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None)
     }
 
 
-def _lens(camera, settings, warn):
+def _lens(camera, settings, used, warn):
     """Return the `lens` of a request; {} where everything is sharp."""
     if not lens.is_used(camera) or debug_pictures.shows_technique(settings):
         return {}
-    if method(settings) != 'primitive' or settings.primitive.primary == 'RASTERISED':
+    if used != 'primitive' or settings.primitive.primary == 'RASTERISED':
         warn(f"Camera '{camera.name}' has depth of field, which rasterised pictures do not show; everything is "
              'sharp instead. Choose Primitive Tracing and traced camera rays to see it.')
         return {}
@@ -263,7 +266,7 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
     projection = _cropped(np.array(region_data.window_matrix, np.float64), rectangle, region.width,
                           region.height)
     request = build(depsgraph, size, (0, scene.panoptes.viewport_samples), region_data.view_matrix,
-                    projection, ['Combined'], warn, _looked_through(depsgraph, space, region_data))
+                    projection, ['Combined'], warn, _looked_through(depsgraph, space, region_data), viewport=True)
     # The picture is shown while it refines.
     request['live'] = True
     # It comes after others like it, whose light it may keep.
@@ -276,3 +279,11 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
     for limit in ('time_budget', 'noise_threshold'):
         request['settings'].pop(limit, None)
     return request, (left, bottom, right - left, top - bottom)
+
+
+def coarser(request, coarseness):
+    """Return a 3D View's request whose pixels cover so many by so many of `request`'s."""
+    if coarseness == 1:
+        return request
+    size = {name: max(-(-request[name] // coarseness), 1) for name in ('width', 'height')}
+    return {**request, **size}

@@ -10,10 +10,9 @@ view turns.
 import bpy
 
 from . import changeover, compat, requests, session
+from .pace import Pace
 from .sync import SceneSync
 
-# Seconds that `draw` waits for the first sample of a new view.
-_FIRST_SAMPLE_WAIT = 0.25
 # Seconds for which an outdated job may go on when it has not shown anything yet.
 _GRACE = 1.0
 _POLL_INTERVAL = 0.03
@@ -46,6 +45,9 @@ class Viewport:
         # The state of the native scene that this view shows.
         self._state = None
         self._picture = None
+        # What the view shows at full resolution, and how much coarser its picture is while it moves.
+        self._key = None
+        self._pace = Pace()
         # What is shown, and where in the region; and where the picture that is refined belongs.
         self._pixels = None
         self._rectangle = self._rectangle_ahead = (0, 0, 1, 1)
@@ -101,7 +103,7 @@ class Viewport:
         request, rectangle = requests.viewport(
             depsgraph, context.region, context.region_data, _space(context),
             max(engine.get_preview_pixel_size(depsgraph.scene), 1), warnings.append)
-        if self._failure and self._shows(request):
+        if self._failure and self._key == _key(request, self._state):
             return
         self._failure = ''
         self._request_warnings = tuple(warnings)
@@ -109,18 +111,24 @@ class Viewport:
             self._sync(context, depsgraph)
         # A sample of an outdated view is better than the one before it.
         self._advance()
-        if not self._shows(request):
-            self._begin(request, rectangle)
+        self._follow(request, depsgraph.scene.panoptes.viewport_budget)
+        if self._picture is None or self._picture.key != (self._key, self._pace.coarseness):
+            self._begin(requests.coarser(request, self._pace.coarseness), rectangle)
         if not self._picture.is_complete() and self._picture.is_fetched():
             self._start(context, depsgraph)
         self._advance()
         engine.update_stats('Panoptes', self._status())
-        if not self._picture.is_complete():
+        if self.is_rendering():
             _redraw_later(engine, self, _POLL_INTERVAL)
 
-    def _shows(self, request):
-        """Tell whether the picture is one of this request and of the scene as it is."""
-        return self._picture is not None and self._picture.key == _key(request, self._state)
+    def _follow(self, request, budget):
+        """Note what the view shows now, and choose how coarsely."""
+        key = _key(request, self._state)
+        if key != self._key:
+            self._key = key
+            self._pace.changed(budget)
+        else:
+            self._pace.refine()
 
     def _begin(self, request, rectangle):
         """Make the request's picture the one to refine, unless the last deserves its first sample."""
@@ -129,7 +137,8 @@ class Viewport:
             if not last.samples and last.seconds_running() < _GRACE:
                 return
             last.interrupt()
-        self._picture = changeover.picture(request, _key(request, self._state))
+        coarseness = self._pace.coarseness
+        self._picture = changeover.picture(request, (self._key, coarseness), passing=coarseness > 1)
         self._rectangle_ahead = rectangle
 
     def _start(self, context, depsgraph):
@@ -141,20 +150,24 @@ class Viewport:
             # Another view or a final render has written its own version of the scene.
             self._sync(context, depsgraph)
         picture.start(mirror.engine)
-        picture.wait(_FIRST_SAMPLE_WAIT)
 
     def _advance(self):
         """Fetch the newest samples."""
         picture = self._picture
         if picture is None:
             return
+        known = picture.first_seconds
         picture.advance()
-        if picture.samples:
+        if picture.first_seconds and not known:
+            self._pace.took(picture.first_seconds, picture.key[1])
+        if picture.pixels is not None:
             self._pixels, self._rectangle = picture.pixels, self._rectangle_ahead
 
     def _status(self):
         picture = self._picture
         text = picture.status()
+        if picture.key[1] > 1:
+            text += f' at 1/{picture.key[1]} of the resolution'
         if not (picture.is_complete() or picture.is_running()) and picture.is_ready():
             text += ', waiting for another 3D View'
         warnings = self.warnings()
@@ -170,12 +183,15 @@ class Viewport:
 
     def is_rendering(self):
         """Tell whether there are samples to come."""
-        return self._picture is not None and not self._picture.is_complete() and not self._failure
+        coming = self._picture is not None and not (self._picture.is_complete() and self._pace.coarseness == 1)
+        return coming and not self._failure
 
     def has_news(self):
         """Tell whether a redraw would show or start something."""
         picture = self._picture
-        idle = not picture.is_running() and picture.is_ready()
+        if self._pace.coarseness > 1 and self._pace.rests():
+            return True
+        idle = not picture.is_running() and picture.is_ready() and not picture.is_complete()
         return picture.has_news() or idle and session.turns.is_free(picture)
 
     def _draw_last(self):

@@ -53,6 +53,30 @@ void Job::publish(film::Pass pass, std::vector<float> pixels, uint32_t samples) 
   samples_ready_ = samples;
 }
 
+void Job::look(std::vector<float> pixels) {
+  publish(film::Pass::kCombined, std::move(pixels), 0);
+}
+
+bool Job::has_look() const {
+  std::lock_guard lock(mutex_);
+  return pixels_.count(film::Pass::kCombined) > 0;
+}
+
+void Job::begin() {
+  std::lock_guard lock(mutex_);
+  began_ = std::chrono::steady_clock::now();
+}
+
+void Job::end_first_sample() {
+  std::lock_guard lock(mutex_);
+  first_sample_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+double Job::first_sample_seconds() const {
+  std::lock_guard lock(mutex_);
+  return first_sample_seconds_;
+}
+
 void Job::set_status(std::string text, float progress) {
   progress_ = progress;
   std::lock_guard lock(mutex_);

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -36,6 +37,11 @@ class Job {
   void check() const;
   // Samples in the picture that read() gives; grows while a live job runs.
   uint32_t samples_ready() const;
+  // Whether read() gives at least a first look: Combined without some of the effects, which counts as no
+  // sample. Only for frames of a 3D View.
+  bool has_look() const;
+  // From when the frame's turn came to its first sample; 0 while there is none.
+  double first_sample_seconds() const;
   // A pass, channels a pixel, rows bottom to top. Live jobs offer Combined after each sample, all
   // jobs offer everything at their end. Throws Error when it is not there.
   std::vector<float> read(film::Pass pass) const;
@@ -46,6 +52,9 @@ class Job {
  private:
   friend class RenderThread;
   void publish(film::Pass pass, std::vector<float> pixels, uint32_t samples);
+  void look(std::vector<float> pixels);
+  void begin();
+  void end_first_sample();
   void set_status(std::string text, float progress);
   void end(std::string error);
 
@@ -57,6 +66,8 @@ class Job {
   bool ended_ = false;
   std::string error_, status_ = "waiting";
   uint32_t samples_ready_ = 0;
+  std::chrono::steady_clock::time_point began_;
+  double first_sample_seconds_ = 0;
   std::map<film::Pass, std::vector<float>> pixels_;
   std::shared_ptr<const film::Pieces> pieces_;
   RenderStats stats_;

@@ -68,7 +68,12 @@ RenderThread::RenderThread(const gl::ContextOptions& options)
 
 void RenderThread::render(Job& job, SharedScene& scene) {
   std::string error;
+  job.begin();
   try {
+    const RenderRequest& request = job.request();
+    const bool looks = request.viewport && !request.force_all_effects && !traces_paths(request) &&
+                       request.debug_picture == ray_picture::Kind::kNone;
+    if (looks && !job.cancelled()) look_first(job, scene);
     if (!job.cancelled()) render_frame(job, scene);
   } catch (const Cancelled&) {
   } catch (const std::bad_alloc&) {
@@ -85,6 +90,18 @@ bool RenderThread::upload_ahead(SharedScene& scene) {
   } catch (const std::exception&) {
     return false;
   }
+}
+
+plan::Effects RenderThread::plan_of(const RenderRequest& request, const scene::Scene& scene) {
+  // Ranges that are to be merged have the plan of a picture of many samples, whichever they are.
+  const int samples = request.pieces    ? std::numeric_limits<int>::max()
+                      : single(request) ? 1
+                                        : std::max(int(request.last_sample), 2);
+  return plan::make_plan(scene.facts(), {samples, request.soft_shadows, request.filter_penumbrae,
+                                         request.force_all_effects, request.passes,
+                                         request.debug_picture, traces_paths(request),
+                                         {request.paths, request.camera.lens.radius > 0},
+                                         request.occlusion, request.cache, request.specular_rays});
 }
 
 void RenderThread::publish(Job& job, const film::PassSet& passes) {
@@ -180,15 +197,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     const SharedScene::Hold held = shared.hold();
     scene::Scene& scene = *held;
     gpu_scene_.update(scene);
-    // Ranges that are to be merged have the plan of a picture of many samples, whichever they are.
-    const int samples = request.pieces    ? std::numeric_limits<int>::max()
-                        : single(request) ? 1
-                                          : std::max(int(request.last_sample), 2);
-    plan = plan::make_plan(scene.facts(), {samples, request.soft_shadows,
-                                           request.filter_penumbrae, request.force_all_effects,
-                                           request.passes, request.debug_picture, paths,
-                                           {request.paths, request.camera.lens.radius > 0},
-                                           request.occlusion, request.cache, request.specular_rays});
+    plan = plan_of(request, scene);
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
@@ -236,6 +245,11 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     film_.end_sample(request.first_sample + done);
     ++done;
     gl::check_errors("render");
+    if (done == 1) {
+      compiled_.insert(running(plan));
+      glFinish();
+      job.end_first_sample();
+    }
     if (!film_.all_active() && film_.active_count() == 0) break;
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
       film::PassSet combined;

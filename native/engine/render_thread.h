@@ -11,6 +11,9 @@
 #include "ray_picture/ray_picture.h"
 #include "realtime/realtime.h"
 
+#include <set>
+#include <vector>
+
 namespace panoptes::engine {
 
 class RenderThread {
@@ -26,6 +29,12 @@ class RenderThread {
 
  private:
   void render_frame(Job& job, SharedScene& shared);
+  static plan::Effects plan_of(const RenderRequest& request, const scene::Scene& scene);
+  // Which effects of a plan run.
+  static std::vector<bool> running(const plan::Effects& plan);
+  // Where the job is one of a 3D View and its effects have never run: shows the scene without the rarer
+  // ones, while the driver has not yet compiled their programs.
+  void look_first(Job& job, SharedScene& shared);
   // Prepares for a frame that shows the scene, and frees what rays need.
   void begin_realtime(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
   void begin_paths(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
@@ -42,6 +51,7 @@ class RenderThread {
   TracedScene traced_;
   ray_picture::RayPicture ray_picture_;
   path_tracer::PathTracer path_tracer_;
+  std::set<std::vector<bool>> compiled_;  // the effects of frames that have been rendered
 };
 
 }  // namespace panoptes::engine

@@ -184,6 +184,10 @@ void bind_job(py::module_& m) {
       .def("cancel", &Job::cancel, "Asks the job to stop; it does so within one pass.")
       .def("cancelled", &Job::cancelled)
       .def("samples_ready", &Job::samples_ready, "Samples in what read() gives.")
+      .def("has_look", &Job::has_look,
+           "Whether read('Combined') gives a picture, if only of the simplest effects, with no sample.")
+      .def("first_sample_seconds", &Job::first_sample_seconds,
+           "How long the frame took to its first sample; 0 while there is none.")
       .def("finish", &Job::check, "Raises Error when the render failed.")
       .def("read", &read_pass, py::arg("name"),
            "float32 array (height, width, channels) of a pass, row 0 at the bottom.")

@@ -22,15 +22,22 @@ class SlowJob:
         self.method = request.get('method')
         self.done = 0
         self.stopped = False
+        self.looked = False
 
     def samples_ready(self):
         return self.done
+
+    def has_look(self):
+        return self.done > 0 or self.looked
+
+    def first_sample_seconds(self):
+        return 0.25 if self.done else 0.0
 
     def wait(self, seconds):
         return self.stopped or self.done == self.last - self.first
 
     def read(self, name):
-        mean = np.arange(self.first, self.first + self.done).mean()
+        mean = np.arange(self.first, self.first + self.done).mean() if self.done else -1.0
         return np.full((2, 3, 4), mean - 100.0 if self.method == 'realtime' else mean, np.float32)
 
     def cancel(self):
@@ -102,6 +109,18 @@ class TestRefinement:
         assert not found.is_running() and not found.is_complete() and not found.is_fetched() and found.has_news()
         found.advance()
         assert found.is_complete() and found.is_fetched() and found.samples == 8
+
+    def test_shows_a_first_look_that_is_no_sample(self, engine):
+        found = picture()
+        found.start(engine)
+        engine.jobs[0].looked = True
+        assert found.has_news()
+        found.advance()
+        assert found.samples == 0 and found.pixels[0, 0, 0] == -1.0 and not found.has_news()
+        engine.jobs[0].done = 3
+        assert not found.first_seconds and found.has_news()
+        found.advance()
+        assert found.pixels[0, 0, 0] == 1.0 and found.first_seconds == 0.25
 
     def test_interrupted_before_the_first_sample(self, engine):
         found = picture()
