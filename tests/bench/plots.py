@@ -63,8 +63,8 @@ def strip(folder, name, pictures, gain=1.0):
         return
     for place, (caption, picture) in enumerate(pictures.items()):
         left = place * (width + GAP_PIXELS)
-        # Pixels stay what they are: an image of a figure is not scaled.
-        figure.figimage(images.linear_to_srgb(picture), left, CAPTION_PIXELS, origin="lower")
+        # Pixels stay what they are: an image of a figure is not scaled, and bytes are not rounded down.
+        figure.figimage(np.rint(images.linear_to_srgb(picture) * 255.0).astype(np.uint8), left, CAPTION_PIXELS, origin="lower")
         figure.text((left + width / 2) / figure.bbox.width, CAPTION_PIXELS / 2 / figure.bbox.height, caption, ha="center", va="center", **FONT)
     _write(figure, folder, name)
 
