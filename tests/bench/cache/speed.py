@@ -24,6 +24,8 @@ UNOPTIMISED = "all cells, RGB3"
 WITHOUT = "no cache"
 # Of Figure 5.6: so many places on the way to what is in the middle of the picture, and how much of the way is gone.
 PLACES, WAY = 6, 0.9
+# Volumes that are chosen by the view would change with it, and with the resolution: here one holds the whole scene.
+ONE_VOLUME = {"cascades": 1}
 # Of Figure 5.12.
 RESOLUTIONS = (16, 24, 32, 48)
 
@@ -56,7 +58,7 @@ def table_5_1(options):
     for path in light.paths_of(options, TABLE):
         bounces, resolution = TABLE.get(path.stem, (2, 24))
         scene = light.Light(path, options.pixels)
-        common = {"bounces": bounces, "resolution": resolution}
+        common = {"bounces": bounces, "resolution": resolution, **ONE_VOLUME}
         # By turns with the others it would make them find their voxels anew.
         composed = stage.median_milliseconds(stage.by_turns({WITHOUT: {"enabled": False}}, lambda off: scene.cached(1, **off), options.repeat)[WITHOUT],
                                              "compose")
@@ -102,7 +104,7 @@ def figure_5_6(options):
     scene = light.Light(options.scene or stage.our_scene("canyon"), options.pixels)
     places, rows = [], {}
     for metres in approach(scene.scene):
-        taken = stage.by_turns({name: {"occupancy": name, "bounces": 1} for name in ("geometry", "depth")}, lambda chosen: scene.cached(1, **chosen), options.repeat)
+        taken = stage.by_turns({name: {"occupancy": name, "bounces": 1, **ONE_VOLUME} for name in ("geometry", "depth")}, lambda chosen: scene.cached(1, **chosen), options.repeat)
         places.append(metres)
         rows[f"{metres:.1f} m"] = {f"{name} {what}": value for name, shots in taken.items()
                                    for what, value in (("occupancy", occupied(shots[-1])), ("ms", light.cache_milliseconds(shots)))}
@@ -118,7 +120,7 @@ def figure_5_6(options):
 def figure_5_12(options):
     """Time of the cache's stages, summed in their order, against resolution."""
     scene = light.Light(options.scene or stage.our_scene("canyon"), options.pixels)
-    taken = stage.by_turns({str(side): {"resolution": side, "bounces": 2} for side in RESOLUTIONS}, lambda chosen: scene.cached(1, **chosen), options.repeat)
+    taken = stage.by_turns({str(side): {"resolution": side, "bounces": 2, **ONE_VOLUME} for side in RESOLUTIONS}, lambda chosen: scene.cached(1, **chosen), options.repeat)
     stages = list(dict.fromkeys(name for shots in taken.values() for name in shots[-1].times() if name.startswith(light.CACHE)))
     times = {name: [stage.median_milliseconds(shots, name) for shots in taken.values()] for name in stages}
     rows = {side: {"occupancy": occupied(shots[-1])} for side, shots in taken.items()}
