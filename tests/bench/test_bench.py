@@ -4,12 +4,19 @@
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+sys.path[:0] = [str(HERE), str(ROOT / "tests" / "metrics")]
+
+import images  # noqa: E402
+import plots  # noqa: E402
+
 BLENDER = os.environ.get("PANOPTES_BLENDER", "/usr/bin/blender")
 
 
@@ -41,6 +48,50 @@ def bench_occlusion(section, scene, *arguments):
 def bench_cache(scene, *arguments):
     """What that of the radiance cache finds on a scene of ours, at a few pixels."""
     return bench("cache/run.py", "--scene", ROOT / "blend_scenes" / f"{scene}.blend", "--size", "64x36", "--samples", "1", "--repeat", "1", *arguments)
+
+
+def shown(path):
+    """The pixels of a picture that is not of one colour, and whose file holds nothing but them."""
+    assert not any(chunk in path.read_bytes() for chunk in (b"tEXt", b"zTXt", b"iTXt", b"tIME"))
+    found = images.read_pass(path)
+    assert found.std() > 0.01
+    return found
+
+
+def of_strip(path, count, size):
+    """The pictures of a strip, float[count, height, width, 3], which has captions below them."""
+    (width, height), found = size, shown(path)
+    assert found.shape[:2] == (height + plots.CAPTION_PIXELS, count * (width + plots.GAP_PIXELS) - plots.GAP_PIXELS)
+    assert found[height:].min() < 0.5 < found[height:].max()
+    return np.array([found[:height, place * (width + plots.GAP_PIXELS):][:, :width] for place in range(count)])
+
+
+def test_strips_hold_their_pictures_unchanged(tmp_path):
+    ramp = np.linspace(0.0, 1.0, 120 * 8 * 3).reshape(8, 120, 3)
+    plots.strip(tmp_path, "ramps", {"first": ramp, "second": 1.0 - ramp}, 0.5)
+    first, second = images.linear_to_srgb(of_strip(tmp_path / "ramps.png", 2, (120, 8)))
+    # Rows are from the bottom in the one and from the top in the other.
+    assert np.abs(first[::-1] - images.linear_to_srgb(0.5 * ramp)).max() <= 0.51 / 255
+    assert np.abs(second[::-1] - images.linear_to_srgb(0.5 - 0.5 * ramp)).max() <= 0.51 / 255
+
+
+def test_plots_are_drawn_at_their_size(tmp_path):
+    plots.lines(tmp_path, "lines", "title", "x, m", [0.0, 1.0, 3.0], {"y": {"one": [1.0, 2.0, 0.5], "other": [0.1, 0.2, 0.3]}, "z": {"one": [3.0, 1.0, 2.0]}})
+    plots.stacks(tmp_path, "stacks", "title", "x", "ms", {"16": "60%", "32": "40%"}, {"first": [1.0, 2.0], "then": [3.0, 5.0]})
+    width, height = plots.DIAGRAM
+    assert shown(tmp_path / "lines.png").shape == (height, 2 * width, 3)
+    assert shown(tmp_path / "stacks.png").shape == (height, width, 3)
+
+
+def test_without_matplotlib_a_sentence_says_so_and_pictures_have_no_captions(tmp_path, monkeypatch, capsys):
+    for module in ("matplotlib", "matplotlib.figure", "matplotlib.backends.backend_agg"):
+        monkeypatch.setitem(sys.modules, module, None)
+    ramp = np.linspace(0.0, 1.0, 20 * 8 * 3).reshape(8, 20, 3)
+    plots.strip(tmp_path, "ramps", {"first": ramp, "second": ramp})
+    plots.stacks(tmp_path, "stacks", "title", "x", "ms", {"16": "60%"}, {"first": [1.0]})
+    assert shown(tmp_path / "ramps.png").shape == (8, 40, 3)
+    assert not (tmp_path / "stacks.png").exists()
+    assert capsys.readouterr().out.count("python3-matplotlib") == 1
 
 
 @pytest.mark.slow
@@ -125,13 +176,13 @@ def test_cached_light_is_measured_against_both_references(tmp_path):
     # Chrominance without direction shows where red and green light meet.
     assert rows["y3co1cg1, 2 bounces"]["lab"] > rows["rgb3, 2 bounces"]["lab"]
     assert all(rows[f"{name}, 2 bounces"]["clipped"] < 0.01 for name in ("y3co1cg1", "rgb3"))
-    assert (tmp_path / "error_two_spots_2.png").stat().st_size > 0
+    of_strip(tmp_path / "error_two_spots_2.png", 3, (64, 36))
 
 
 @pytest.mark.slow
-def test_what_makes_the_cache_cheaper_is_told_step_by_step():
+def test_what_makes_the_cache_cheaper_is_told_step_by_step(tmp_path):
     found = bench_cache("two_spots", "--section", "speed", "--part", "5.1", "--part", "5.12", "--section", "stability", "--frames", "2",
-                        "--flicker-samples", "4")
+                        "--flicker-samples", "4", "--pictures", tmp_path)
     rows = found["speed"]["5.1"]["two_spots"]["rows"]
     assert rows["all cells, RGB3"]["occupancy"] == 1.0 > rows["+ occupancy"]["occupancy"] > 0.0
     assert all(row["GI ms"] > 0.0 for row in rows.values())
@@ -139,6 +190,7 @@ def test_what_makes_the_cache_cheaper_is_told_step_by_step():
     for row in found["speed"]["5.12"]["rows"].values():
         times = [value for name, value in row.items() if name != "occupancy"]
         assert times == sorted(times) and times[-1] > 0.0
+    shown(tmp_path / "figure_5_12_two_spots.png")
     for row in found["stability"]["two_spots"].values():
         assert 0.0 <= row["frame mean"] <= row["frame largest"] <= row["block largest"]
 
@@ -149,7 +201,8 @@ def test_walls_keep_light_apart(tmp_path):
     # The dark room is brighter by what has leaked.
     assert rows["both sides"]["energy"] > rows["what seeds see"]["energy"]
     assert rows["both sides"]["both"] > rows["what seeds see"]["both"]
-    assert (tmp_path / "leaks_doorway.png").stat().st_size > 0
+    paths, leaking, kept = of_strip(tmp_path / "leaks_doorway.png", 3, (64, 36))
+    assert leaking.mean() > kept.mean()
 
 
 @pytest.mark.slow
@@ -162,13 +215,29 @@ def test_ladders_climb_one_setting_at_a_time():
 
 
 @pytest.mark.slow
-def test_encodings_of_one_size_and_the_cells_that_are_seen():
-    found = bench_cache("two_spots", "--section", "speed", "--part", "5.6", "--part", "5.11")["speed"]
+def test_encodings_beside_each_other_and_the_cells_that_are_seen(tmp_path):
+    found = bench_cache("two_spots", "--section", "speed", "--part", "5.6", "--part", "5.8", "--part", "5.11", "--pictures", tmp_path)["speed"]
     rows = found["5.11"]["two_spots"]
     assert set(rows) == {"y3co1cg1", "y2co2cg2", "rgb2"}
     # The third band of luminance is worth more to luminance than chrominance costs it.
     assert rows["y3co1cg1"]["luminance rmse"] < rows["y2co2cg2"]["luminance rmse"]
+    # All that the first encoding of Figure 5.8 changes is how colours are written.
+    errors = [row["rmse"] for row in found["5.8"]["two_spots"].values()]
+    assert errors == sorted(errors) and errors[0] < 0.001 < errors[-1]
+    for figure in ("5_8", "5_11"):
+        assert of_strip(tmp_path / f"figure_{figure}_two_spots.png", 4, (64, 36)).std(axis=(1, 2, 3)).min() > 0.01
+    seen = [row["depth occupancy"] for row in found["5.6"]["rows"].values()]
     assert all(row["depth occupancy"] < row["geometry occupancy"] <= 1.0 for row in found["5.6"]["rows"].values())
+    assert seen[-1] < seen[0]
+    shown(tmp_path / "figure_5_6_two_spots.png")
+
+
+@pytest.mark.slow
+def test_the_inside_of_the_cache_is_shown(tmp_path):
+    found = bench_cache("two_spots", "--section", "inside", "--pictures", tmp_path)["inside"]["rows"]
+    assert set(found) == {"geometry", "occupancy", "lobes", "light", "clipped"}
+    assert found["clipped"]["mean"] < 0.01
+    assert of_strip(tmp_path / "inside_two_spots.png", 5, (64, 36))[:4].std(axis=(1, 2, 3)).min() > 0.01
 
 
 @pytest.mark.slow

@@ -4,12 +4,9 @@
 Beside what judge.py tells: clipped, the share of the cache's light that is cut off where harmonics ring below 0.
 """
 
-from pathlib import Path
-
-import images
 import judge
 import light
-import numpy as np
+import plots
 import tables
 
 ENCODINGS = ("y3co1cg1", "y3co2cg2", "y3co3cg3", "rgb3", "y2co2cg2", "rgb2")
@@ -22,21 +19,14 @@ def measure(path, options):
     for bounces in options.bounces:
         paths, cycles = (trace(options.reference_samples, bounces) for trace in (scene.paths, scene.cycles))
         rows[f"paths, {bounces} bounces"] = judge.floor(paths, cycles, colour)
-        shown = [(paths + cycles) / 2.0]
+        shown = {"paths": (paths + cycles) / 2.0 * colour}
         for encoding in options.encodings:
-            found = scene.cached(options.samples, bounces=bounces, encoding=encoding).passes["DiffInd"][:, :, :3].astype(np.float64)
+            found = scene.diffuse(options.samples, bounces=bounces, encoding=encoding)
             rows[f"{encoding}, {bounces} bounces"] = {**judge.row(found, paths, cycles, colour),
                                                       "clipped": scene.clipped(bounces=bounces, encoding=encoding)}
-            shown.append(found)
-        write(options.pictures, f"error_{path.stem}_{bounces}", [picture * colour for picture in shown])
+            shown[light.as_written(encoding)] = found * colour
+        plots.strip(options.pictures, f"error_{path.stem}_{bounces}", shown, judge.exposure(shown["paths"]))
     return {"scene": path.stem, "size": scene.size, "rows": rows}
-
-
-def write(folder, name, pictures):
-    """Writes linear pictures side by side, the reference first, as bright as that is looked at best."""
-    if folder:
-        gain = judge.exposure(pictures[0])
-        images.write_png(Path(folder) / f"{name}.png", gain * np.concatenate(pictures, axis=1)[::-1])
 
 
 def run(options):

@@ -29,13 +29,16 @@ class Ladder(NamedTuple):
     larger: int = 1
 
 
+DIRECTIONS = (8, 16, 32, 64, 128, 256)
 RSM = {"first_bounce": "rsm", "bounces": 1}
 LADDERS = {
     "resolution": Ladder("resolution", (8, 16, 24, 32, 48)),
     "rsm samples": Ladder("rsm_samples", (25, 50, 100, 200, 400, 800), RSM),
     "rsm spread s, window alone": Ladder("rsm_spread", (0.1, 0.2, 0.4, 0.8, 1.0), {**RSM, "rsm_mixed": False}),
     "rsm spread s, mixed": Ladder("rsm_spread", (0.1, 0.2, 0.4, 0.8, 1.0), {**RSM, "rsm_mixed": True}),
-    "directions": Ladder("directions", (8, 16, 32, 64, 128, 256)),
+    "directions": Ladder("directions", DIRECTIONS),
+    # The first bounce has samples of its own, as in the dissertation, so that these are its n_sec.
+    "directions of later bounces": Ladder("directions", DIRECTIONS, {**RSM, "bounces": BOUNCES}),
     # 0: every voxel that a ray passes.
     "march steps": Ladder("march_steps", (4, 6, 8, 12, 24, 48, 0)),
     "voxel fill": Ladder("voxel_fill", (0.0, 0.25, 0.5, 0.75, 1.0)),

@@ -5,10 +5,9 @@ Beside each other are cells that light both sides of a wall, as in the dissertat
 seeds see; and paths. Look at the pictures, too: what has leaked is little of the whole light and much of a dark room's.
 """
 
-import error
 import judge
 import light
-import numpy as np
+import plots
 import tables
 
 SCENES = ("doorway",)
@@ -23,10 +22,10 @@ def run(options):
         scene = light.Light(path, options.pixels)
         colour = scene.colour()
         paths, cycles = (trace(options.reference_samples, BOUNCES) for trace in (scene.paths, scene.cycles))
-        cached = {name: scene.cached(options.samples, bounces=BOUNCES, walls=walls).passes["DiffInd"][:, :, :3].astype(np.float64)
-                  for name, walls in WALLS.items()}
+        cached = {name: scene.diffuse(options.samples, bounces=BOUNCES, walls=walls) for name, walls in WALLS.items()}
         rows = found[path.stem] = {name: judge.row(picture, paths, cycles, colour) for name, picture in cached.items()}
-        error.write(options.pictures, f"leaks_{path.stem}", [picture * colour for picture in ((paths + cycles) / 2.0, *cached.values())])
+        shown = {name: picture * colour for name, picture in {"paths": (paths + cycles) / 2.0, **cached}.items()}
+        plots.strip(options.pictures, f"leaks_{path.stem}", shown, judge.exposure(shown["paths"]))
         tables.show(f"leaks: {path.stem}, {scene.size[0]}x{scene.size[1]}, {BOUNCES} bounces, {options.samples} samples of the film, references of "
                     f"{options.reference_samples}", rows, judge.FORMATS)
     return found

@@ -21,6 +21,10 @@ class Light(Reference):
         """A Shot of Real-time; `settings` as in settings['cache'] of a request."""
         return self.take("realtime", passes, samples, cache=settings)
 
+    def diffuse(self, samples, **settings):
+        """DiffInd of Real-time, float64[height, width, 3]; `settings` as of cached()."""
+        return self.cached(samples, **settings).passes["DiffInd"][:, :, :3].astype(np.float64)
+
     def clipped(self, **settings):
         """Share of the cache's light, that of the world with it, which is cut off where harmonics ring below 0."""
         light, share = (self.take("realtime", ("Combined",), 1, cache={**settings, "picture": picture}).passes["Combined"].astype(np.float64)
@@ -48,3 +52,13 @@ def paths_of(options, names=SCENES):
 def cache_milliseconds(shots):
     """Median time of the cache's passes without what makes voxels."""
     return stage.median_milliseconds(shots, *CACHE) - stage.median_milliseconds(shots, *VOXELS)
+
+
+def as_written(encoding):
+    """The encoding as the dissertation writes it, "Y3Co1Cg1"."""
+    return encoding.upper().replace("CO", "Co").replace("CG", "Cg")
+
+
+def stage_of(name):
+    """What a pass of the cache is called in a figure."""
+    return name.removeprefix(CACHE[0]).removeprefix(CACHE[1]).strip("_").replace("_", " ")

@@ -8,9 +8,10 @@ Sections, each of one or more tables; the dissertation's figures that they answe
 
     error      DiffInd against our paths and Cycles', for each encoding and 1 to 3 bounces  [5.8, 5.9]
     ladders    what each setting is worth: resolution, samples of reflective shadow maps, directions, steps, ...
-    speed      what occupancy and encodings save, by Table 5.1's own definition; the camera's path, balanced encodings,
-               times of the stages  [Table 5.1, 5.6, 5.11, 5.12]
+    speed      what occupancy and encodings save, by Table 5.1's own definition; the camera's way, encodings beside each
+               other, times of the stages  [Table 5.1, 5.6, 5.8, 5.11, 5.12]
     leaks      what does not pass thin walls, beside cells that light both sides of them
+    inside     the cache's debug pictures: voxels, cells, their light, and what of it is clipped  [5.4, 5.5, 5.7]
     stability  flicker while a lamp and the camera move slowly
     frame      a whole picture after an edit, beside Cycles' first sample
 
@@ -28,13 +29,15 @@ sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[1] / "metrics")]
 
 import error  # noqa: E402
 import frame  # noqa: E402
+import inside  # noqa: E402
 import ladders  # noqa: E402
 import leaks  # noqa: E402
 import speed  # noqa: E402
 import stability  # noqa: E402
 from engines import ENGINES, own_arguments  # noqa: E402
 
-SECTIONS = {"error": error.run, "ladders": ladders.run, "speed": speed.run, "leaks": leaks.run, "stability": stability.run, "frame": frame.run}
+SECTIONS = {"error": error.run, "ladders": ladders.run, "speed": speed.run, "leaks": leaks.run,
+            "inside": inside.run, "stability": stability.run, "frame": frame.run}
 
 
 def parse_options():
@@ -52,7 +55,7 @@ def parse_options():
     parser.add_argument("--flicker-samples", type=int, default=64, help="stability: of each frame by paths")
     parser.add_argument("--frame-samples", type=int, action="append", metavar="N", help="frame: of the film; may be repeated")
     parser.add_argument("--repeat", type=int, default=3, help="of what is timed; the median counts")
-    parser.add_argument("--pictures", metavar="FOLDER", type=Path, help="write pictures there as PNG")
+    parser.add_argument("--pictures", metavar="FOLDER", type=Path, help="write pictures and plots there as PNG")
     parser.add_argument("--json", action="store_true", help="print every measurement as JSON behind the tables")
     parser.add_argument("--out", help=argparse.SUPPRESS)
     parser.add_argument("--child", choices=ENGINES, help=argparse.SUPPRESS)

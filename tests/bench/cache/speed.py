@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the cache costs and what makes it cheaper: the section speed, Table 5.1 and Figures 5.6, 5.11 and 5.12.
+"""What the cache costs and what makes it cheaper: the section speed, Table 5.1 and Figures 5.6, 5.8, 5.11 and 5.12.
 
 Times are those of the cache's own passes, once a picture; what makes voxels is told apart, as in the table, and what
 looks cells up for the picture, by which the pass that puts it together takes longer than without a cache. What is
@@ -7,21 +7,25 @@ compared is rendered by turns in one process, several times; the median counts, 
 does not.
 """
 
+import bpy
+import compressed
 import judge
 import light
 import metrics
 import numpy as np
+import plots
 import stage
 import tables
+from mathutils import Matrix, Vector
 
 # Of Table 5.1: the scenes that stand for those of the dissertation, with its number of bounces and its resolution.
 TABLE = {"canyon": (1, 16), "doorway": (1, 24), "two_spots": (2, 24), "sponza_crytek": (2, 32)}
 UNOPTIMISED = "all cells, RGB3"
 WITHOUT = "no cache"
-# Of Figure 5.11: 11 coefficients, 12 and 12; and what they are measured against, 27.
-BALANCED, UNCOMPRESSED = ("y3co1cg1", "y2co2cg2", "rgb2"), "rgb3"
-# Of Figure 5.6: so many places along the camera's path.
-PLACES = 6
+# Of Figure 5.6: so many places on the way to what is in the middle of the picture, and how much of the way is gone.
+PLACES, WAY = 6, 0.9
+# Volumes that are chosen by the view would change with it, and with the resolution: here one holds the whole scene.
+ONE_VOLUME = {"cascades": 1}
 # Of Figure 5.12.
 RESOLUTIONS = (16, 24, 32, 48)
 
@@ -35,11 +39,6 @@ def occupied(shot):
 def improvement(slow, fast):
     """By how much more a time is than another: t_slow / t_fast - 1."""
     return slow / fast - 1.0 if fast else None
-
-
-def diffuse(shot):
-    """DiffInd, float64[height, width, 3]."""
-    return shot.passes["DiffInd"][:, :, :3].astype(np.float64)
 
 
 def steps(bounces):
@@ -59,7 +58,7 @@ def table_5_1(options):
     for path in light.paths_of(options, TABLE):
         bounces, resolution = TABLE.get(path.stem, (2, 24))
         scene = light.Light(path, options.pixels)
-        common = {"bounces": bounces, "resolution": resolution}
+        common = {"bounces": bounces, "resolution": resolution, **ONE_VOLUME}
         # By turns with the others it would make them find their voxels anew.
         composed = stage.median_milliseconds(stage.by_turns({WITHOUT: {"enabled": False}}, lambda off: scene.cached(1, **off), options.repeat)[WITHOUT],
                                              "compose")
@@ -72,7 +71,7 @@ def table_5_1(options):
                           "gain": None if before is None else improvement(before, times[name]), "total": improvement(times[UNOPTIMISED], times[name])}
             before = times[name]
         colour = scene.colour()
-        full, short = (diffuse(scene.cached(options.samples, **common, encoding=encoding)) * colour for encoding in ("y3co3cg3", "y3co1cg1"))
+        full, short = (scene.diffuse(options.samples, **common, encoding=encoding) * colour for encoding in ("y3co3cg3", "y3co1cg1"))
         gain = judge.exposure(full)
         loss = {"lab": metrics.lab_rmse(short * gain, full * gain), "seen": metrics.perceptual_share(short * gain, full * gain)}
         found[path.stem] = {"bounces": bounces, "resolution": resolution, "rows": rows, "y3co3cg3 vs y3co1cg1": loss}
@@ -82,56 +81,60 @@ def table_5_1(options):
     return found
 
 
+def approach(scene):
+    """Moves the scene's camera from place to place; the metres that each lies from the first one.
+
+    The way goes from where the camera begins straight on to what is in the middle of its picture. So nothing stands in
+    it, and ever less of the scene is seen, as on the path of the dissertation.
+    """
+    scene.frame_set(scene.frame_start)
+    camera = scene.camera
+    start = camera.matrix_world.copy()
+    ahead = start.to_quaternion() @ Vector((0.0, 0.0, -1.0))
+    hit, place, *_ = scene.ray_cast(bpy.context.evaluated_depsgraph_get(), start.translation, ahead)
+    camera.animation_data_clear()
+    for metres in np.linspace(0.0, WAY * (place - start.translation).length if hit else 0.0, PLACES):
+        camera.matrix_world = Matrix.Translation(ahead * metres) @ start
+        bpy.context.view_layer.update()
+        yield float(metres)
+
+
 def figure_5_6(options):
-    """Occupancy by what the camera sees, and its time, along the path of the canyon's camera."""
+    """Occupancy by the geometry and by what the camera sees, and their times, as the view closes in."""
     scene = light.Light(options.scene or stage.our_scene("canyon"), options.pixels)
-    rows = {}
-    for frame in np.linspace(scene.scene.frame_start, scene.scene.frame_end, PLACES).round().astype(int):
-        scene.scene.frame_set(int(frame))
-        taken = stage.by_turns({name: {"occupancy": name, "bounces": 1} for name in ("geometry", "depth")}, lambda chosen: scene.cached(1, **chosen), options.repeat)
-        rows[f"frame {frame}"] = {f"{name} {what}": value for name, shots in taken.items()
-                                  for what, value in (("occupancy", occupied(shots[-1])), ("ms", light.cache_milliseconds(shots)))}
-    tables.show(f"Figure 5.6: along the camera's path through {scene.path.stem}, one bounce, {scene.size[0]}x{scene.size[1]}", rows,
+    places, rows = [], {}
+    for metres in approach(scene.scene):
+        taken = stage.by_turns({name: {"occupancy": name, "bounces": 1, **ONE_VOLUME} for name in ("geometry", "depth")}, lambda chosen: scene.cached(1, **chosen), options.repeat)
+        places.append(metres)
+        rows[f"{metres:.1f} m"] = {f"{name} {what}": value for name, shots in taken.items()
+                                   for what, value in (("occupancy", occupied(shots[-1])), ("ms", light.cache_milliseconds(shots)))}
+    title = f"{scene.path.stem}, one bounce, {scene.size[0]}x{scene.size[1]}"
+    tables.show(f"Figure 5.6: the camera's way into {title}", rows,
                 {"geometry occupancy": ".1%", "geometry ms": ".2f", "depth occupancy": ".1%", "depth ms": ".2f"})
+    drawn = {what: {f"cells by {name}": [row[f"{name} {column}"] for row in rows.values()] for name in ("geometry", "depth")}
+             for what, column in (("share of cells that hold light", "occupancy"), ("time of the cache, ms", "ms"))}
+    plots.lines(options.pictures, f"figure_5_6_{scene.path.stem}", title, "way of the camera, m", places, drawn)
     return {"scene": scene.path.stem, "rows": rows}
-
-
-def figure_5_11(options):
-    """Encodings of about the same size: more bands of luminance, or as many of each."""
-    found = {}
-    for path in light.paths_of(options, ("two_spots", "canyon", "sponza_crytek")):
-        scene = light.Light(path, options.pixels)
-        colour = scene.colour()
-        whole = diffuse(scene.cached(options.samples, bounces=2, encoding=UNCOMPRESSED)) * colour
-        rows = {}
-        for encoding in BALANCED:
-            shown = diffuse(scene.cached(options.samples, bounces=2, encoding=encoding)) * colour
-            rows[encoding] = {"rmse": metrics.relative_rmse(shown, whole), "luminance rmse": metrics.relative_rmse(*(np.repeat(
-                picture @ [[0.25], [0.5], [0.25]], 3, axis=2) for picture in (shown, whole))), **judge.look(shown, whole)}
-        found[path.stem] = rows
-        tables.show(f"Figure 5.11: {path.stem}, against {UNCOMPRESSED} of the same cache", rows,
-                    {"rmse": ".4f", "luminance rmse": ".4f", "flip": ".4f", "lab": ".3f", "seen": ".2%"})
-    return found
 
 
 def figure_5_12(options):
     """Time of the cache's stages, summed in their order, against resolution."""
     scene = light.Light(options.scene or stage.our_scene("canyon"), options.pixels)
-    taken = stage.by_turns({str(side): {"resolution": side, "bounces": 2} for side in RESOLUTIONS}, lambda chosen: scene.cached(1, **chosen), options.repeat)
+    taken = stage.by_turns({str(side): {"resolution": side, "bounces": 2, **ONE_VOLUME} for side in RESOLUTIONS}, lambda chosen: scene.cached(1, **chosen), options.repeat)
     stages = list(dict.fromkeys(name for shots in taken.values() for name in shots[-1].times() if name.startswith(light.CACHE)))
-    rows = {}
-    for side, shots in taken.items():
-        total, row = 0.0, {"occupancy": occupied(shots[-1])}
-        for name in stages:
-            total += stage.median_milliseconds(shots, name)
-            row[name] = total
-        rows[side] = row
-    tables.show(f"Figure 5.12: cumulative ms of the stages on {scene.path.stem}, two bounces, {scene.size[0]}x{scene.size[1]}", rows,
-                {"occupancy": ".1%", **{name: ".2f" for name in stages}})
+    times = {name: [stage.median_milliseconds(shots, name) for shots in taken.values()] for name in stages}
+    rows = {side: {"occupancy": occupied(shots[-1])} for side, shots in taken.items()}
+    for name, summed in zip(stages, np.cumsum(list(times.values()), axis=0)):
+        for row, milliseconds in zip(rows.values(), summed):
+            row[name] = float(milliseconds)
+    title = f"{scene.path.stem}, two bounces, {scene.size[0]}x{scene.size[1]}"
+    tables.show(f"Figure 5.12: cumulative ms of the stages on {title}", rows, {"occupancy": ".1%", **{name: ".2f" for name in stages}})
+    plots.stacks(options.pictures, f"figure_5_12_{scene.path.stem}", f"{title}; above: cells that hold light", "cells along the longest side", "time, ms",
+                 {side: f"{row['occupancy']:.0%}" for side, row in rows.items()}, {light.stage_of(name): values for name, values in times.items()})
     return {"scene": scene.path.stem, "rows": rows}
 
 
-PARTS = {"5.1": table_5_1, "5.6": figure_5_6, "5.11": figure_5_11, "5.12": figure_5_12}
+PARTS = {"5.1": table_5_1, "5.6": figure_5_6, "5.8": compressed.figure_5_8, "5.11": compressed.figure_5_11, "5.12": figure_5_12}
 
 
 def run(options):

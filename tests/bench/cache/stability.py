@@ -49,7 +49,7 @@ def measure(path, moving, options):
     for frame in range(first, first + options.frames):
         scene.scene.frame_set(frame)
         colour = scene.colour()
-        ours.append(block_means(scene.cached(options.samples, bounces=BOUNCES).passes["DiffInd"][:, :, :3] * colour))
+        ours.append(block_means(scene.diffuse(options.samples, bounces=BOUNCES) * colour))
         paths.append(block_means(scene.paths(options.flicker_samples, BOUNCES, moving) * colour))
     ours, paths = np.array(ours), np.array(paths)
     row = {}
