@@ -25,6 +25,7 @@ def start():
     panoptes.register()
     scene = bpy.context.scene
     scene.render.engine = 'PANOPTES'
+    scene.panoptes.method = 'realtime'
     scene.panoptes.viewport_samples = 4
     scene.panoptes.samples = 2
     scene.render.resolution_x, scene.render.resolution_y = 64, 48

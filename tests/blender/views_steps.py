@@ -54,6 +54,7 @@ def start():
     count_starts()
     scene = bpy.context.scene
     scene.render.engine = 'PANOPTES'
+    scene.panoptes.method = 'realtime'
     scene.panoptes.viewport_samples = 8
     # Things that shine cast light, which is not what is looked at here.
     scene.panoptes.realtime.shadow_resolution = 64
