@@ -59,7 +59,7 @@ class PANOPTES_PT_indirect_cells(_IndirectSubPanel, bpy.types.Panel):
         column.active = settings.enabled
         for name in ('encoding', 'cascades', 'voxels', 'voxel_fill', 'occupancy'):
             column.prop(settings, name)
-        if settings.occupancy in {'AUTO', 'DEPTH'}:
+        if settings.occupancy in {'AUTO', 'DEPTH', 'TIERS'}:
             column.prop(settings, 'depth_stride')
         if settings.occupancy != 'ALL':
             column.prop(settings, 'dilate')

@@ -122,10 +122,13 @@ class PanoptesRadianceCacheSettings(bpy.types.PropertyGroup):
         name='Cells',
         description='Which cells hold light; the others cost nothing',
         items=(
-            ('AUTO', 'Automatic', 'Those that are seen for one bounce, those with surfaces for more'),
+            ('AUTO', 'Automatic', 'What a picture needs: those that are seen for one bounce, in tiers for more; in 3D '
+                                  'Views, which keep their light while they turn, and for mirrors all with surfaces'),
             ('GEOMETRY', 'With Surfaces', 'All at surfaces, seen or not: what further bounces need'),
             ('DEPTH', 'Seen', 'Those in which the camera sees something. Fewest; further bounces lack what comes '
                               'from elsewhere'),
+            ('TIERS', 'In Tiers', 'Those, and in a quarter of the directions those with surfaces that are not seen, for '
+                                  'the light that they send there'),
             ('ALL', 'All', 'Every one, in empty space, too. Slow; what the others are compared with'),
         ),
         default='AUTO')

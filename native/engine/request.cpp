@@ -71,10 +71,10 @@ std::string RenderStats::to_json() const {
   return fmt::format(
       "{{\"device\": {}, \"size\": [{}, {}], \"samples\": {}, \"effects\": {}, \"passes\": {}, "
       "\"build_ms\": {}, \"trace_ms\": {}, \"total_ms\": {}, \"rays\": {}, "
-      "\"cache\": {{\"cells\": {}, \"lattice\": {}}}, "
+      "\"cache\": {{\"cells\": {}, \"fewer\": {}, \"lattice\": {}}}, "
       "\"memory_bytes\": {}, \"estimated_error\": {}, \"warnings\": {}}}",
       quoted(device), width, height, samples, array(effects, effect), array(passes, pass),
-      number(build_ms), number(trace_ms), number(total_ms), rays, cache.cells, cache.lattice, memory_bytes,
+      number(build_ms), number(trace_ms), number(total_ms), rays, cache.cells, cache.fewer, cache.lattice, memory_bytes,
       estimated_error ? number(*estimated_error, "{:.6g}") : "null", array(warnings, quoted));
 }
 

@@ -21,12 +21,14 @@ constexpr std::array<std::string_view, 2> kFirstBounceNames{"surfaces", "rsm"};
 
 // Which cells hold light (section 5.5).
 enum class Occupancy {
-  kAuto,      // those that the camera sees if there is one bounce, else those that hold geometry
-  kGeometry,
+  kAuto,      // what one picture needs: for one bounce kDepth, for more kTiers; kGeometry where frames follow
+              // each other or rays look up light anywhere
+  kGeometry,  // those that hold geometry
   kDepth,     // those that the camera sees
+  kTiers,     // those, and in fewer directions the others that hold geometry, for the light that they send there
   kAll,       // every one: what occupancy is measured against
 };
-constexpr std::array<std::string_view, 4> kOccupancyNames{"auto", "geometry", "depth", "all"};
+constexpr std::array<std::string_view, 5> kOccupancyNames{"auto", "geometry", "depth", "tiers", "all"};
 
 // What is shown in place of the scene.
 enum class Picture {

@@ -46,6 +46,7 @@ void add_volume(gl::ProgramSource& source) {
   source.defines.push_back(fmt::format("VOLUMES_BLOCK {}", kVolumesBlock));
   source.defines.push_back(fmt::format("VOLUME_WORDS_UNIT {}", kWordsUnit));
   source.defines.push_back(fmt::format("VOLUME_SURFELS_UNIT {}", kSurfelsUnit));
+  source.defines.push_back(fmt::format("MET_SIDES_UNIT {}", kMetSidesUnit));
 }
 
 // Where in cells light is received (cell_places.glsl).
@@ -95,15 +96,15 @@ gl::ProgramSource mark_seen_program() {
 
 gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate) {
   gl::ProgramSource source = compute("cells that hold light", "radiance_cache/list_cells.comp");
-  const int by = occupancy == Occupancy::kAll ? 2 : occupancy == Occupancy::kDepth ? 1 : 0;
-  source.defines = {fmt::format("OCCUPANCY {}", by), fmt::format("DILATE {}", int(dilate))};
+  source.defines = {"GEOMETRY 1", "DEPTH 2", "TIERS 3", "ALL 4", fmt::format("OCCUPANCY {}", int(occupancy)),
+                    fmt::format("DILATE {}", int(dilate))};
   add_volume(source);
   return source;
 }
 
-gl::ProgramSource march_program(int steps, bool walls) {
+gl::ProgramSource march_program(int steps, bool walls, bool mark_met) {
   gl::ProgramSource source = compute("rays of cells", "radiance_cache/march.comp");
-  source.defines = {fmt::format("MARCH_STEPS {}", steps)};
+  source.defines = {fmt::format("MARCH_STEPS {}", steps), fmt::format("MARK_MET {}", int(mark_met))};
   add_places(source, walls);
   add_volume(source);
   return source;
@@ -128,12 +129,13 @@ gl::ProgramSource blend_program(Encoding encoding, bool split) {
   return source;
 }
 
-gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache) {
+gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache, bool met_alone) {
   gl::ProgramSource source = compute("light of surfels", "radiance_cache/bounce.comp");
   add_volume(source);
   if (cache) options.add_defines(source);
   source.defines.push_back(fmt::format("LAMPS {}", int(lamps)));
   source.defines.push_back(fmt::format("CACHE_LIGHT {}", int(cache)));
+  source.defines.push_back(fmt::format("MET_ALONE {}", int(met_alone)));
   return source;
 }
 
@@ -149,9 +151,10 @@ gl::ProgramSource picture_program(Picture picture, const LookUpOptions& options,
   return source;
 }
 
-gl::ProgramSource light_surfels_program(bool shadows) {
+gl::ProgramSource light_surfels_program(bool shadows, bool met_alone) {
   gl::ProgramSource source = compute("lamps on surfels", "radiance_cache/light_surfels.comp");
-  source.defines = {fmt::format("SHADOWS {}", int(shadows)), "FILTERED_PENUMBRAE 0"};
+  source.defines = {fmt::format("SHADOWS {}", int(shadows)), "FILTERED_PENUMBRAE 0",
+                    fmt::format("MET_ALONE {}", int(met_alone))};
   add_volume(source);
   return source;
 }

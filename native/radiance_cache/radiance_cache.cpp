@@ -48,11 +48,14 @@ void RadianceCache::begin(const Frame& frame) {
   occupancy_ = settings_.occupancy;
   if (occupancy_ == Occupancy::kAuto) {
     // Surfaces that nobody sees are lit by cells as well if they are to send that light on, and what
-    // rays meet anyway.
-    const bool elsewhere = bounces_ > 1 || (world_light_ && bounces_ > 0) ||
-                           plan::runs(frame.plan, "specular_rays");
-    occupancy_ = elsewhere ? Occupancy::kGeometry : Occupancy::kDepth;
+    // rays meet anyway. Cells that do not depend on the camera keep their light while a view turns.
+    const bool rays = plan::runs(frame.plan, "specular_rays"), elsewhere = bounces_ > 1 || (world_light_ && bounces_ > 0);
+    occupancy_ = rays || (elsewhere && frame.follows) ? Occupancy::kGeometry
+                 : elsewhere                          ? Occupancy::kTiers
+                                                      : Occupancy::kDepth;
   }
+  // Samples of reflective shadow maps are as many in every cell.
+  if (rsm_ && occupancy_ == Occupancy::kTiers) occupancy_ = Occupancy::kGeometry;
   camera_ = frame.camera;
   bounds_ = frame.scene.bounds();
   follows_ = frame.follows;
@@ -83,7 +86,7 @@ void RadianceCache::place(double distance, const tracing::TriangleList& triangle
            glm::all(glm::greaterThanEqual(high, glm::dvec3(bounds_.high)));
   if (!stale_) update_volume(triangles, gpu, view_block);
   find_seeds();
-  active_ = 0;
+  for (Tier& tier : tiers_) tier.cells = 0;
   const int64_t texels = int64_t(volume_.volumes().count.y) * cell_texels(settings_.encoding) *
                          (split_ ? 2 : 1);
   want(cells_, cells_texels_, GL_RGBA32F, texels * 16);
@@ -126,8 +129,10 @@ void RadianceCache::release() {
   reflective_.release();
   grids_.clear();
   volume_.release();
-  for (gl::Texture* texture : {&met_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_, &reach_texels_}) *texture = gl::Texture();
-  for (gl::Buffer* buffer : {&list_, &seeds_, &reach_, &met_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
+  tiers_ = {};
+  for (gl::Texture* texture : {&met_sides_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_, &reach_texels_})
+    *texture = gl::Texture();
+  for (gl::Buffer* buffer : {&seeds_, &reach_, &met_sides_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
                             &scales_block_})
     *buffer = gl::Buffer();
 }

@@ -77,7 +77,7 @@ class RadianceCache {
   void release();
   bool runs() const { return runs_; }
   Occupied occupied() const {
-    return runs_ ? Occupied{active_, volume_.volumes().count.y} : Occupied{};
+    return runs_ ? occupied_cells() : Occupied{};
   }
 
   // What an artist should know of the frame; empty if there is nothing.
@@ -133,6 +133,14 @@ class RadianceCache {
     std::array<int64_t, 5> revisions{};
     bool operator==(const State&) const = default;
   };
+  // Cells of a kind, which look in equally many directions.
+  struct Tier {
+    gl::Buffer list;  // their numbers
+    uint32_t cells = 0;
+    int directions = 0;
+    gl::Buffer met;   // by their rays, as march.comp writes it
+    gl::Texture met_texels;
+  };
   // All of it but the grids.
   static State state_of(const Frame& frame);
   // Whether the volume may lag behind geometry that moves.
@@ -144,9 +152,15 @@ class RadianceCache {
   void find_seeds();
   void find_reach();
   void list_cells();
+  void choose_directions();
+  Occupied occupied_cells() const;
   void march();
+  void march(Tier& tier);
   void bounce(bool cache);
   void gather_rays(bool bounced, bool reflected);
+  void gather_rays(const Tier& tier, bool bounced, bool reflected);
+  // Whether light comes from no surfaces but those that rays have met: nobody else looks at the others.
+  bool met_alone() const { return occupancy_ == Occupancy::kDepth || occupancy_ == Occupancy::kTiers; }
   void bind_scales(const LookUpOptions& options, const gpu_scene::GpuScene& gpu,
                    const glm::dvec3& origin);
   void write_block(gl::Buffer& block, const glm::dvec3& origin) const;
@@ -165,14 +179,15 @@ class RadianceCache {
   bool whole_ = false;  // the last of them holds the scene
   glm::dvec3 list_origin_{0};
   GeometryVolume volume_;
-  gl::Buffer list_, seeds_, reach_, met_, radiosity_, direct_, cells_;
-  gl::Texture seeds_texels_, reach_texels_, met_texels_, radiosity_texels_, cells_texels_;
+  // With Occupancy::kTiers the first holds the cells that are seen and the second the others, which look in
+  // fewer directions; otherwise the first holds all.
+  std::array<Tier, 2> tiers_;
+  gl::Buffer seeds_, reach_, met_sides_, radiosity_, direct_, cells_;
+  gl::Texture seeds_texels_, reach_texels_, met_sides_texels_, radiosity_texels_, cells_texels_;
   gl::Buffer list_block_, view_block_, scales_block_;  // CacheVolumes about the list's origin, and about the camera
   Occupancy occupancy_ = Occupancy::kGeometry;  // never kAuto
   bool transmission_ = false;
   bool reached_ = false;  // reach_ is that of the volume
-  uint32_t active_ = 0;
-  int directions_ = 0;  // of rays of a cell
   ReflectiveMaps reflective_;
 
   CellHistory history_;
@@ -192,15 +207,16 @@ gl::ProgramSource find_seeds_program();
 gl::ProgramSource find_reach_program();
 gl::ProgramSource mark_seen_program();
 gl::ProgramSource list_cells_program(Occupancy occupancy, bool dilate);
-gl::ProgramSource march_program(int steps, bool walls);
+gl::ProgramSource march_program(int steps, bool walls, bool mark_met);
 struct GatherOptions {
   Encoding encoding = Encoding::kY3Co1Cg1;
   bool split = false, world = false, bounced = false;
   bool reflected = false;  // by what reflective shadow maps show
 };
 gl::ProgramSource gather_program(const GatherOptions& options);
-gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache);
-gl::ProgramSource light_surfels_program(bool shadows);
+// `met_alone`: of surfels that rays have met.
+gl::ProgramSource bounce_program(const LookUpOptions& options, bool lamps, bool cache, bool met_alone);
+gl::ProgramSource light_surfels_program(bool shadows, bool met_alone);
 gl::ProgramSource picture_program(Picture picture, const LookUpOptions& options,
                                   const film::Film& film);
 

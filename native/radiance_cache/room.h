@@ -7,7 +7,8 @@ namespace panoptes::radiance_cache {
 
 // Of at least so many bytes.
 inline void want(gl::Buffer& buffer, int64_t bytes) {
-  if (!buffer || buffer.bytes() < bytes) buffer.reserve(bytes + bytes / 4);
+  // A whole number of texels: others could not be cleared.
+  if (!buffer || buffer.bytes() < bytes) buffer.reserve((bytes + bytes / 4 + 15) / 16 * 16);
 }
 
 // With a buffer texture of all of it.

@@ -23,6 +23,7 @@ struct Region {
 // How many cells hold light, of all that there are.
 struct Occupied {
   int64_t cells = 0, lattice = 0;
+  int64_t fewer = 0;  // of these, those that look in fewer directions since nobody sees them
 };
 
 struct Settings {

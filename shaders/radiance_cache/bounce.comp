@@ -1,5 +1,6 @@
 // What surfels send on, to the front and to the back: light of the lamps, and with CACHE_LIGHT what
-// arrives there by the cache as it is. One invocation a side of a surfel.
+// arrives there by the cache as it is. One invocation a side of a surfel, first all fronts, then all backs, since
+// neighbours are met by rays on the same side.
 #include "base/invocation.glsl"
 #include "radiance_cache/volume.glsl"
 #include "radiance_cache/rays.glsl"
@@ -13,13 +14,21 @@ layout(std430, binding = 0) writeonly buffer Radiosity { uint radiosity[]; };  /
 #if LAMPS
 layout(std430, binding = 1) readonly buffer Direct { vec4 direct[]; };  // irradiance of the lamps
 #endif
-layout(location = 0) uniform uint count;  // of sides
+#if MET_ALONE
+#include "radiance_cache/met_sides.glsl"
+#endif
+layout(location = 0) uniform uint count;  // of surfels
 
 void main() {
-  uint side = invocation();
-  if (side >= count) return;
-  Surfel surfel = fetch_surfel(side / 2u);
-  bool front = (side & 1u) == 0u;
+  uint number = invocation();
+  if (number >= 2u * count) return;
+  bool front = number < count;
+  number -= front ? 0u : count;
+  uint side = 2u * number + (front ? 0u : 1u);
+#if MET_ALONE
+  if (!is_met(side)) return;
+#endif
+  Surfel surfel = fetch_surfel(number);
   vec3 arriving = vec3(0.0);
 #if LAMPS
   arriving = direct[side].rgb;

@@ -10,6 +10,9 @@
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 1) buffer Direct { vec4 direct[]; };  // irradiance, front and back
+#if MET_ALONE
+#include "radiance_cache/met_sides.glsl"
+#endif
 layout(location = 0) uniform uint count;
 layout(location = 2) uniform uint first_light;
 layout(location = 3) uniform uint light_count;
@@ -20,6 +23,9 @@ layout(location = 6) uniform float share;  // of their light
 void main() {
   uint number = invocation();
   if (number >= count) return;
+#if MET_ALONE
+  if (!is_met(2u * number) && !is_met(2u * number + 1u)) return;
+#endif
   Surfel surfel = fetch_surfel(number);
   vec3 position = surfel.place.xyz + offset, normal = unpack_unit(surfel.surface.x);
   vec3 front = vec3(0.0), back = vec3(0.0);

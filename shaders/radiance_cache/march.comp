@@ -8,10 +8,14 @@
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer List { uint active_cells[]; };
 layout(std430, binding = 1) writeonly buffer Met { uint met[]; };
+#if MARK_MET
+layout(std430, binding = 2) buffer MetSides { uint met_sides[]; };  // of surfels: front, back; 1: met
+#endif
 layout(location = 0) uniform uvec3 counts;     // cells of the list, directions, seed
 layout(location = 1) uniform ivec4 lattice[MOST_CASCADES];  // xyz: of each volume's first cell
 
 layout(binding = 0) uniform usamplerBuffer seeds;
+
 void main() {
   uint ray = spread_invocation(64u);
   if (ray >= counts.x * counts.y) return;
@@ -33,6 +37,9 @@ void main() {
     uint surfel = surfel_of(cache.volumes[m.volume], m.voxel);
     vec3 normal = unpack_unit(fetch_surfel(surfel).surface.x);
     result = 2u * surfel + (dot(normal, direction) > 0.0 ? 1u : 0u);
+#if MARK_MET
+    met_sides[result] = 1u;
+#endif
   }
   met[ray] = result;
 }

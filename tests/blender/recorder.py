@@ -91,5 +91,5 @@ class Job:
         """Return statistics as the native engine does."""
         return {'device': 'recorder', 'size': [self._request['width'], self._request['height']],
                 'samples': 1, 'effects': [], 'passes': [], 'build_ms': 0.0, 'trace_ms': 0.0,
-                'total_ms': 0.0, 'rays': 0, 'cache': {'cells': 0, 'lattice': 0}, 'memory_bytes': 0,
+                'total_ms': 0.0, 'rays': 0, 'cache': {'cells': 0, 'fewer': 0, 'lattice': 0}, 'memory_bytes': 0,
                 'estimated_error': 0.0, 'warnings': []}

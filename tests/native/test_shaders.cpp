@@ -279,7 +279,7 @@ class Shaders : public ::testing::Test {
         for (int bits : {15, 80})
           if (bits == 15 || encoding % 3 == 0)
             with_film(film::PassSet().set(), true, bits, split, split, cache);
-        add(radiance_cache::bounce_program(cache, split, true));
+        add(radiance_cache::bounce_program(cache, split, true, true));
         add(radiance_cache::blend_program(cache.encoding, split));
         add(specular_rays::surroundings_program({surfaces(15), false}, {split, cache}));
         for (bool world : {false, true})
@@ -287,18 +287,20 @@ class Shaders : public ::testing::Test {
             for (bool reflected : {false, true})
               add(radiance_cache::gather_program({cache.encoding, split, world, bounced, reflected}));
       }
-    add(radiance_cache::bounce_program({}, true, false));
-    add(radiance_cache::bounce_program({.walls = false}, true, true));
+    for (bool met_alone : {false, true}) {
+      add(radiance_cache::bounce_program({}, true, false, met_alone));
+      add(radiance_cache::bounce_program({.walls = false}, true, true, met_alone));
+      for (bool shadows : {false, true}) add(radiance_cache::light_surfels_program(shadows, met_alone));
+    }
     add(radiance_cache::find_seeds_program());
     add(radiance_cache::find_reach_program());
     for (bool either : {false, true}) {
       for (auto occupancy : {radiance_cache::Occupancy::kGeometry, radiance_cache::Occupancy::kDepth,
-                             radiance_cache::Occupancy::kAll})
+                             radiance_cache::Occupancy::kTiers, radiance_cache::Occupancy::kAll})
         add(radiance_cache::list_cells_program(occupancy, either));
-      add(radiance_cache::march_program(either ? 12 : 0, either));
+      for (bool mark_met : {false, true}) add(radiance_cache::march_program(either ? 12 : 0, either, mark_met));
       for (bool mixed : {false, true})
         add(radiance_cache::rsm_gather_program(mixed, either ? 12 : 0, either));
-      add(radiance_cache::light_surfels_program(either));
     }
     for (int bits = 0; bits < 256; ++bits) {
       with_film(film::PassSet().set(), true, bits);

@@ -11,7 +11,8 @@ from reference import Reference
 
 SCENES = ("cornell", "sponza_crytek", "canyon", "two_spots", "doorway")
 # Effects whose passes are the cache's; their names begin so. What makes voxels is told apart, as in Table 5.1.
-CACHE, VOXELS = ("radiance_cache", "cache_"), ("radiance_cache_voxels", "radiance_cache_surfels", "radiance_cache_reach")
+CACHE, VOXELS = ("radiance_cache", "cache_"), (
+    "radiance_cache_voxels", "radiance_cache_surfels", "radiance_cache_seeds", "radiance_cache_reach")
 
 
 class Light(Reference):

@@ -45,9 +45,9 @@ def steps(bounces):
     """Settings of the table's steps, each of which adds to the one before.
 
     Without any optimisation, every cell holds three colours of three bands each. As in the dissertation, cells are those
-    that the camera sees where light bounces once, else those of the geometry.
+    that the camera sees where light bounces once; for more, those of the geometry look around as well, in fewer directions.
     """
-    cells = "depth" if bounces == 1 else "geometry"
+    cells = "depth" if bounces == 1 else "tiers"
     return {UNOPTIMISED: {"occupancy": "all", "encoding": "rgb3"}, "+ occupancy": {"occupancy": cells, "encoding": "rgb3"},
             "+ Y3Co2Cg2": {"occupancy": cells, "encoding": "y3co2cg2"}, "+ Y3Co1Cg1": {"occupancy": cells, "encoding": "y3co1cg1"}}
 

@@ -31,6 +31,7 @@ class CacheFrames : public ::testing::Test {
   Picture fresh() {
     engine::RenderRequest alone = r;
     alone.viewport = false;
+    alone.cache.occupancy = radiance_cache::Occupancy::kGeometry;  // as in frames that follow each other
     return render(scene, alone);
   }
   template <class F>

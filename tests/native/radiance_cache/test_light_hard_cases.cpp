@@ -106,6 +106,7 @@ TEST(CacheHardCases, NothingButLamps) {
 
 TEST(CacheHardCases, MoreRaysThanThereMayBe) {
   engine::RenderRequest r = cached();
+  r.cache.occupancy = radiance_cache::Occupancy::kGeometry;
   const Picture all = render(table({}), r);
   EXPECT_TRUE(all.stats.warnings.empty());
   r.cache.most_rays = 20 * all.stats.cache.cells + 1;
