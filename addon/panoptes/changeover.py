@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A picture that Real-time shows at once, and that changes over to paths of light while the view rests.
 
-A few samples of paths are noise, Real-time is smooth but leaves light out. What is shown is a mean of
-the two whose weight for paths grows with their samples: first nothing, then more and more, and in the
-end it is all of it. So nothing jumps, and the finished picture is that of paths alone.
+A few samples of paths are noise, Real-time is smooth but leaves light out. What is shown lies between
+the two, about each pixel nearer to the one whose error is lower there: so nothing jumps, and what
+Real-time gets right stays as smooth as it is until paths are better.
 """
 
 import time
@@ -12,20 +12,9 @@ from .refinement import Refinement
 
 # Real-time's samples: the least at which edges and soft shadows are smooth.
 QUICK_SAMPLES = 4
-# Paths do not show before the first of these numbers of samples, and nothing else from the second on.
-# On the way their noise falls from about what Real-time leaves out to a third of it (RMSE of Cycles on
-# Sponza: .09 at 4 samples, .039 at 16).
-HIDDEN_SAMPLES, SHOWN_SAMPLES = 3, 16
 # Seconds without a new view before paths are traced: what is done once for them, such as gathering
 # triangles, would make a turning view stutter.
 REST = 0.5
-
-
-def weight(samples, wanted):
-    """Return the share (0 to 1) that paths have in the picture after so many samples of `wanted`."""
-    if samples >= wanted:
-        return 1.0
-    return min(max((samples - HIDDEN_SAMPLES) / (SHOWN_SAMPLES - HIDDEN_SAMPLES), 0.0), 1.0)
 
 
 class Changeover:
@@ -33,7 +22,6 @@ class Changeover:
 
     def __init__(self, request, key):
         self.key = key
-        self.pixels = None
         self._quick = Refinement(quick(request), key)
         self._paths = Refinement(request, key)
         self._begun = time.monotonic()
@@ -41,6 +29,11 @@ class Changeover:
     @property
     def _now(self):
         return self._paths if self._quick.is_complete() else self._quick
+
+    @property
+    def shown(self):
+        """What the view shows: float32[H, W, 4], or None."""
+        return self._quick.shown if self._paths.shown is None else self._paths.shown
 
     @property
     def samples(self):
@@ -92,30 +85,17 @@ class Changeover:
 
     def start(self, engine):
         """Queue a job for what comes next."""
+        if self._now is self._paths:
+            self._paths.smooth = self._quick.pixels
         self._now.start(engine)
 
     def advance(self):
         """Fetch the newest samples; let go of a job that has ended. Raises what the job raised."""
-        self._after(self._now.advance)
+        self._now.advance()
 
     def interrupt(self):
         """Stop the job, keeping what it has made; `start` goes on from there."""
-        self._after(self._now.interrupt)
-
-    def _after(self, change):
-        before = self.samples
-        change()
-        if self.samples != before or self.pixels is None:
-            self._mix()
-
-    def _mix(self):
-        share = weight(self._paths.samples, self._paths.wanted)
-        if share <= 0.0:
-            self.pixels = self._quick.pixels
-        elif share >= 1.0:
-            self.pixels = self._paths.pixels
-        else:
-            self.pixels = self._quick.pixels * (1.0 - share) + self._paths.pixels * share
+        self._now.interrupt()
 
     def cancel(self):
         """Stop the job if there is one; may be called from any thread."""

@@ -14,12 +14,14 @@ class Refinement:
     """The picture of one request.
 
     `pixels` is float32[H, W, 4] as soon as `samples` is not 0; before, it may be a first look without
-    some effects. `first_seconds` is how long the first sample took, 0 while there is none.
+    some effects. `shown` is what a 3D View shows: the same, or, where it takes over the picture
+    `smooth`, that of the two whose error is lower, or what lies between them. `first_seconds` is how
+    long the first sample took, 0 while there is none.
     """
 
     def __init__(self, request, key):
         self.key = key
-        self.pixels = None
+        self.pixels = self.shown = self.smooth = None
         self.samples = 0
         self.warnings = ()
         self.first_seconds = 0.0
@@ -71,7 +73,12 @@ class Refinement:
         """Queue a job for the samples that are missing."""
         self._base, self._base_samples = self.pixels, self.samples
         samples = (self._first + self.samples, self._last)
-        self._job = engine.render({**self._request, 'samples': samples})
+        request = {**self._request, 'samples': samples}
+        if self.smooth is not None:
+            request['smooth'] = self.smooth
+            if self._base_samples:
+                request.update(before=self._base, before_samples=self._base_samples)
+        self._job = engine.render(request)
         self._started = time.monotonic()
 
     def advance(self):
@@ -87,7 +94,7 @@ class Refinement:
         if ended or self._base_samples + job.samples_ready() > self.samples:
             self._fetch(job)
         elif self.pixels is None and job.has_look():
-            self.pixels = job.read('Combined')
+            self.pixels = self.shown = job.read('Combined')
 
     def interrupt(self):
         """Stop the job, keeping what it has made; `start` goes on from there."""
@@ -107,6 +114,10 @@ class Refinement:
         if self._base_samples:
             pixels = (self._base * self._base_samples + pixels * count) / total
         self.pixels, self.samples = pixels, total
+        # A mixture takes two samples at least.
+        mixed = pixels if self.smooth is None else job.read_shown()
+        if mixed is not None:
+            self.shown = mixed
         self.first_seconds = self.first_seconds or job.first_sample_seconds()
 
     def cancel(self):

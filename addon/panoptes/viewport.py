@@ -160,8 +160,8 @@ class Viewport:
         picture.advance()
         if picture.first_seconds and not known:
             self._pace.took(picture.first_seconds, picture.key[1])
-        if picture.pixels is not None:
-            self._pixels, self._rectangle = picture.pixels, self._rectangle_ahead
+        if picture.shown is not None:
+            self._pixels, self._rectangle = picture.shown, self._rectangle_ahead
 
     def _status(self):
         picture = self._picture

@@ -37,6 +37,11 @@ std::vector<float> Job::read(film::Pass pass) const {
   return found->second;
 }
 
+std::vector<float> Job::read_shown() const {
+  std::lock_guard lock(mutex_);
+  return shown_;
+}
+
 std::shared_ptr<const film::Pieces> Job::pieces() const {
   std::lock_guard lock(mutex_);
   return pieces_;
@@ -55,6 +60,11 @@ void Job::publish(film::Pass pass, std::vector<float> pixels, uint32_t samples) 
 
 void Job::look(std::vector<float> pixels) {
   publish(film::Pass::kCombined, std::move(pixels), 0);
+}
+
+void Job::show(std::vector<float> pixels) {
+  std::lock_guard lock(mutex_);
+  shown_ = std::move(pixels);
 }
 
 bool Job::has_look() const {
@@ -124,11 +134,12 @@ void Engine::require_open() const {
   if (closed_) fail("the render engine has been closed: start it again");
 }
 
-std::shared_ptr<Job> Engine::render(RenderRequest request) {
+std::shared_ptr<Job> Engine::render(RenderRequest request, TakeOver over) {
   require_open();
   request.check();
+  over.check(request.camera);
   request.camera.check(device_.max_texture_size);
-  auto job = std::make_shared<Job>(std::move(request));
+  auto job = std::make_shared<Job>(std::move(request), std::move(over));
   {
     std::lock_guard lock(queue_mutex_);
     queue_.push_back(job);

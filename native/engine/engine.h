@@ -24,7 +24,7 @@ namespace panoptes::engine {
 // One frame under way. Lives as long as anybody holds it.
 class Job {
  public:
-  explicit Job(RenderRequest request) : request_(std::move(request)) {}
+  explicit Job(RenderRequest request, TakeOver over = {}) : request_(std::move(request)), over_(std::move(over)) {}
 
   const RenderRequest& request() const { return request_; }
   void cancel() { cancelled_ = true; }
@@ -45,6 +45,9 @@ class Job {
   // A pass, channels a pixel, rows bottom to top. Live jobs offer Combined after each sample, all
   // jobs offer everything at their end. Throws Error when it is not there.
   std::vector<float> read(film::Pass pass) const;
+  // What a 3D View shows while paths take over Real-time's picture (TakeOver): RGBA, rows bottom to top;
+  // empty until there is something to show by them.
+  std::vector<float> read_shown() const;
   // What the finished render kept for merging; null where the request did not ask for it.
   std::shared_ptr<const film::Pieces> pieces() const;
   RenderStats stats() const;
@@ -53,12 +56,14 @@ class Job {
   friend class RenderThread;
   void publish(film::Pass pass, std::vector<float> pixels, uint32_t samples);
   void look(std::vector<float> pixels);
+  void show(std::vector<float> pixels);
   void begin();
   void end_first_sample();
   void set_status(std::string text, float progress);
   void end(std::string error);
 
   RenderRequest request_;
+  TakeOver over_;
   std::atomic<bool> cancelled_{false};
   std::atomic<float> progress_{0};
   mutable std::mutex mutex_;
@@ -69,6 +74,7 @@ class Job {
   std::chrono::steady_clock::time_point began_;
   double first_sample_seconds_ = 0;
   std::map<film::Pass, std::vector<float>> pixels_;
+  std::vector<float> shown_;
   std::shared_ptr<const film::Pieces> pieces_;
   RenderStats stats_;
 };
@@ -106,7 +112,7 @@ class Engine {
 
   // Queues a frame of the scene as it is when the frame's turn comes. Throws Error when the request
   // makes no sense.
-  std::shared_ptr<Job> render(RenderRequest request);
+  std::shared_ptr<Job> render(RenderRequest request, TakeOver over = {});
 
  private:
   void require_open() const;

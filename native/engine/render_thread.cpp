@@ -2,12 +2,14 @@
 
 #include "base/cancelled.h"
 #include "base/error.h"
+#include "film/mixture.h"
 #include "gl/counters.h"
 #include "plan/plan.h"
 
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 namespace panoptes::engine {
@@ -114,6 +116,31 @@ void RenderThread::publish(Job& job, const film::PassSet& passes) {
                   film_.samples());
 }
 
+void RenderThread::publish_live(Job& job) {
+  film::PassSet combined;
+  combined.set(size_t(film::Pass::kCombined));
+  publish(job, combined);
+  if (!job.over_.smooth.empty()) mix(job);
+}
+
+void RenderThread::mix(Job& job) {
+  const RenderRequest& request = job.request();
+  std::vector<float> variance = film_.variance(request.exposure);
+  if (variance.empty()) return;
+  std::vector<float> paths = job.read(film::Pass::kCombined);
+  const TakeOver& over = job.over_;
+  if (over.before_samples > 0) {
+    // Samples of the earlier job are as noisy.
+    const float share = float(film_.samples()) / float(film_.samples() + over.before_samples);
+    for (size_t i = 0; i < paths.size(); ++i) paths[i] = std::lerp(over.before[i], paths[i], share);
+    for (float& v : variance) v *= share;
+  }
+  film::Mixture mixture =
+      film::mix_by_error(request.camera.width, request.camera.height, over.smooth, paths, variance);
+  mixture_error_ = mixture.error;
+  job.show(std::move(mixture.pixels));
+}
+
 void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effects& plan,
                                   scene::Scene& scene) {
   ray_picture_.release();
@@ -184,12 +211,14 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
   const Clock::time_point start = Clock::now();
   const RenderRequest& request = job.request();
   timer_.reset();
+  mixture_error_.reset();
 
   // Take over what changed. The plan is made from the same state of the scene.
   job.set_status("uploading the scene", 0);
   const uint32_t wanted = request.last_sample - request.first_sample;
   const bool debug = request.debug_picture != ray_picture::Kind::kNone;
   const bool paths = traces_paths(request);
+  const bool mixes = !job.over_.smooth.empty();
   plan::Effects plan;
   std::vector<std::string> warnings;
   bool traces = false;
@@ -201,7 +230,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
-                {.moments = wanted > 1 && !debug,
+                {.moments = (wanted > 1 || mixes) && !debug,
                  .pieces = request.pieces,
                  // Real-time renders all pixels, and stops when the whole picture is good enough.
                  .noise_threshold = paths && wanted > 1 ? request.noise_threshold : 0});
@@ -252,9 +281,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     }
     if (!film_.all_active() && film_.active_count() == 0) break;
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
-      film::PassSet combined;
-      combined.set(size_t(film::Pass::kCombined));
-      publish(job, combined);
+      publish_live(job);
       last_live = Clock::now();
     }
     // Stop before a sample that would overrun the budget.
@@ -271,6 +298,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
   RenderStats stats;
   stats.trace_ms = ms_since(trace_start);
   publish(job, request.passes);
+  if (mixes) mix(job);
   const std::vector<gl::PassTime> times = timer_.times();
   stats.device = context_.device().renderer;
   stats.width = request.camera.width;
@@ -289,7 +317,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
   }
   if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
   stats.memory_bytes = gl::counters().memory_bytes;
-  stats.estimated_error = film_.estimated_error();
+  stats.estimated_error = mixes ? mixture_error_ : film_.estimated_error();
   if (const uint32_t spoiled = film_.spoiled_samples(); spoiled > 0)
     warnings.push_back(fmt::format("{} samples of pixels were infinite or no number and count as black: "
                                    "look for extreme values in materials, lamps and the world",

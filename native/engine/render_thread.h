@@ -40,6 +40,10 @@ class RenderThread {
   void begin_paths(const RenderRequest& request, const plan::Effects& plan, scene::Scene& scene);
   void render_sample(const Job& job, uint32_t index);
   void publish(Job& job, const film::PassSet& passes);
+  // Combined, and what is shown of it.
+  void publish_live(Job& job);
+  // Shows what lies between the picture that the request has and that of paths so far.
+  void mix(Job& job);
 
   // Declared first, destroyed last: everything below holds GL objects.
   gl::Context context_;
@@ -47,6 +51,7 @@ class RenderThread {
   gl::PassTimer timer_;
   gpu_scene::GpuScene gpu_scene_;
   film::Film film_;
+  std::optional<double> mixture_error_;  // of the frame under way
   realtime::Realtime realtime_;
   TracedScene traced_;
   ray_picture::RayPicture ray_picture_;

@@ -36,6 +36,14 @@ std::string array(const List& list, Write write) {
 
 }  // namespace
 
+void TakeOver::check(const gpu_scene::Camera& camera) const {
+  const size_t size = size_t(camera.width) * size_t(camera.height) * 4;
+  for (const auto* picture : {&smooth, &before})
+    if (!picture->empty() && picture->size() != size)
+      fail("a picture that paths take over has another size than the one that is asked for: please report it");
+  if (before.empty() != (before_samples == 0)) fail("samples that were made before are missing: please report it");
+}
+
 void RenderRequest::check() const {
   if (last_sample <= first_sample)
     fail("samples {} to {} are an empty range: ask for at least one sample", first_sample,

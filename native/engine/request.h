@@ -55,6 +55,16 @@ struct RenderRequest {
   void check() const;
 };
 
+// Where paths take over a picture of Real-time's in a 3D View (film/mixture.h): that picture, and the mean of the
+// samples of paths that an earlier job has made. RGBA, rows bottom to top, of the request's size; empty: none.
+struct TakeOver {
+  std::vector<float> smooth, before;
+  uint32_t before_samples = 0;
+
+  // Throws Error with a sentence where the sizes are others.
+  void check(const gpu_scene::Camera& camera) const;
+};
+
 struct EffectReport : plan::Effect {
   double ms = 0;  // of the passes that run for it alone
 };

@@ -164,6 +164,11 @@ std::optional<double> Film::estimated_error() const {
   return relative_error(moments(), counts());
 }
 
+std::vector<float> Film::variance(float exposure) const {
+  if (!options_.moments || counts_.all < 2) return {};
+  return variances(moments(), counts(), exposure);
+}
+
 uint32_t Film::spoiled_samples() const {
   uint32_t count = 0;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -47,6 +47,8 @@ class Film {
 
   // See noise.h; none without moments or below two samples.
   std::optional<double> estimated_error() const;
+  // Of each pixel's brightness, that of its mean; empty without moments or below two samples.
+  std::vector<float> variance(float exposure) const;
   // Samples of pixels that were infinite or no number, and count as black.
   uint32_t spoiled_samples() const;
 

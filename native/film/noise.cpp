@@ -37,6 +37,13 @@ std::optional<double> relative_error(std::span<const Moments> moments,
   return mean > 0 ? std::sqrt(variance / double(moments.size())) / mean : 0.0;
 }
 
+std::vector<float> variances(std::span<const Moments> moments, const SampleCounts& counts, float scale) {
+  std::vector<float> found(moments.size());
+  for (size_t i = 0; i < moments.size(); ++i)
+    found[i] = float(estimate(moments[i], counts.of(i)).variance * scale * scale);
+  return found;
+}
+
 std::vector<uint32_t> noisy_pixels(std::span<const Moments> moments, const SampleCounts& counts,
                                    int width, int height, double threshold) {
   const double darkest = kDarkest * mean_brightness(moments, counts);

@@ -16,6 +16,9 @@ struct Moments {
 // brightness; none where no pixel has two samples.
 std::optional<double> relative_error(std::span<const Moments> moments, const SampleCounts& counts);
 
+// Of each pixel's brightness, that of its mean over samples; `scale` multiplies the light.
+std::vector<float> variances(std::span<const Moments> moments, const SampleCounts& counts, float scale);
+
 // The pixels (y * width + x, ascending) that want more samples: the standard error of their
 // brightness, or that of one of their eight neighbours, is above `threshold` times the brightness.
 // A pixel that is darker than a hundredth of the mean is held to that: nobody sees its noise.

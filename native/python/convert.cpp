@@ -108,7 +108,17 @@ path_tracer::Settings path_settings(const py::dict& dict) {
   return s;
 }
 
+// float32 (height, width, 4); empty where there is none.
+std::vector<float> picture(const py::dict& dict, const char* key) {
+  const auto pixels = get<Array<float>>(dict, key, {});
+  return {pixels.data(), pixels.data() + pixels.size()};
+}
+
 }  // namespace
+
+engine::TakeOver take_over(const py::dict& dict) {
+  return {picture(dict, "smooth"), picture(dict, "before"), uint32_t(get<int64_t>(dict, "before_samples", 0))};
+}
 
 engine::RenderRequest request(const py::dict& dict) {
   engine::RenderRequest r;

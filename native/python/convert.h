@@ -26,6 +26,7 @@ glm::mat4 matrix(const Array<float>& row_major, const char* name);
 std::vector<glm::vec4> params(const Array<float>& array);
 scene::AlphaMode alpha_mode(const std::string& name);
 engine::RenderRequest request(const py::dict& dict);
+engine::TakeOver take_over(const py::dict& dict);
 
 }  // namespace panoptes::python
 

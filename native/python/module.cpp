@@ -107,6 +107,14 @@ void set_image_pixels(Engine& engine, Id id, const std::string& name, const py::
   edit(engine, [id, image = std::move(image)](Scene& scene) mutable { scene.set_image(id, std::move(image)); });
 }
 
+// (height, width, channels) of a job's picture.
+py::array array_of(const Job& job, std::vector<float> pixels, int channels) {
+  const auto* owned = new std::vector<float>(std::move(pixels));
+  const py::capsule owner(owned, [](void* p) { delete static_cast<std::vector<float>*>(p); });
+  const py::ssize_t height = job.request().camera.height, width = job.request().camera.width;
+  return py::array_t<float>({height, width, py::ssize_t(channels)}, owned->data(), owner);
+}
+
 py::array read_pass(const Job& job, const std::string& name) {
   const film::Pass pass = film::find_pass(name);
   std::vector<float> pixels;
@@ -114,11 +122,17 @@ py::array read_pass(const Job& job, const std::string& name) {
     py::gil_scoped_release release;
     pixels = job.read(pass);
   }
-  const auto* owned = new std::vector<float>(std::move(pixels));
-  const py::capsule owner(owned, [](void* p) { delete static_cast<std::vector<float>*>(p); });
-  const py::ssize_t height = job.request().camera.height, width = job.request().camera.width;
-  return py::array_t<float>({height, width, py::ssize_t(film::info(pass).channels)}, owned->data(),
-                            owner);
+  return array_of(job, std::move(pixels), film::info(pass).channels);
+}
+
+// None while there is nothing.
+py::object read_shown(const Job& job) {
+  std::vector<float> pixels;
+  {
+    py::gil_scoped_release release;
+    pixels = job.read_shown();
+  }
+  return pixels.empty() ? py::none() : py::object(array_of(job, std::move(pixels), 4));
 }
 
 // Pieces on their way from a job into a file; Python only carries them.
@@ -191,6 +205,9 @@ void bind_job(py::module_& m) {
       .def("finish", &Job::check, "Raises Error when the render failed.")
       .def("read", &read_pass, py::arg("name"),
            "float32 array (height, width, channels) of a pass, row 0 at the bottom.")
+      .def("read_shown", &read_shown,
+           "The same of what a 3D View shows while paths take over the request's picture 'smooth', four channels; None "
+           "while there is none.")
       .def("pieces", [](const Job& job) { return KeptPieces{job.pieces()}; },
            "What the ended job kept for add_pieces(); empty unless the request had 'pieces'.")
       .def("stats", [](const Job& job) {
@@ -262,8 +279,9 @@ py::class_<Engine> bind_engine(py::module_& m) {
       .def("render",
            [](Engine& e, const py::dict& dict) {
              engine::RenderRequest r = request(dict);
+             engine::TakeOver over = take_over(dict);
              py::gil_scoped_release release;
-             return e.render(std::move(r));
+             return e.render(std::move(r), std::move(over));
            })
       .def("write_snapshot", [](Engine& e, const std::string& path, const py::dict& dict) {
         const engine::RenderRequest r = request(dict);

@@ -19,6 +19,7 @@ class SlowJob:
 
     def __init__(self, request):
         self.first, self.last = request['samples']
+        self.request = request
         self.method = request.get('method')
         self.done = 0
         self.stopped = False
@@ -39,6 +40,11 @@ class SlowJob:
     def read(self, name):
         mean = np.arange(self.first, self.first + self.done).mean() if self.done else -1.0
         return np.full((2, 3, 4), mean - 100.0 if self.method == 'realtime' else mean, np.float32)
+
+    def read_shown(self):
+        if 'smooth' not in self.request or self.done < 2:
+            return None
+        return 0.5 * (self.request['smooth'] + self.read('Combined'))
 
     def cancel(self):
         self.stopped = True
@@ -164,36 +170,38 @@ class TestChangeover:
             ('realtime', 0, changeover.QUICK_SAMPLES), ('primitive', 0, 40)]
         assert found.warnings == ('A warning.',)
 
-    def test_nothing_jumps(self, engine, found):
+    def test_paths_take_over_the_picture_of_real_time(self, engine, found):
+        assert found.shown is None
         found.start(engine)
         self.go(found, engine.jobs[0], changeover.QUICK_SAMPLES)
-        quick = found.pixels[0, 0, 0]
+        quick = found.shown
         found.start(engine)
-        shown = []
-        for done in range(1, 41):
-            self.go(found, engine.jobs[1], done)
-            paths = np.arange(done).mean()
-            shown.append(float((found.pixels[0, 0, 0] - quick) / (paths - quick)))
-        # From one sample to the next a tenth of the way at most, and never back.
-        assert all(-1e-6 <= after - before < 0.1 for before, after in zip(shown, shown[1:]))
-        assert shown[changeover.HIDDEN_SAMPLES - 1] == 0.0 and shown[changeover.SHOWN_SAMPLES - 1] == 1.0
-
-    def test_a_finished_picture_is_of_paths_alone(self):
-        assert changeover.weight(2, 2) == 1.0 and changeover.weight(2, 3) == 0.0
+        assert (engine.jobs[1].request['smooth'] == quick).all()
+        # One sample does not tell its noise.
+        self.go(found, engine.jobs[1], 1)
+        assert found.shown is quick
+        self.go(found, engine.jobs[1], 3)
+        assert found.shown == pytest.approx(0.5 * (quick + 1.0))
 
     def test_interrupted_and_going_on(self, engine, found):
         found.start(engine)
         engine.jobs[0].done = 2
         found.interrupt()
-        assert found.samples == 2 and found.pixels is not None
+        assert found.samples == 2 and found.shown is not None
         found.start(engine)
         self.go(found, engine.jobs[1], changeover.QUICK_SAMPLES - 2)
         found.start(engine)
+        assert 'before' not in engine.jobs[2].request
         engine.jobs[2].done = 30
         found.interrupt()
+        shown = found.shown
         found.start(engine)
+        request = engine.jobs[3].request
+        assert request['before_samples'] == 30 and request['before'] == pytest.approx(14.5)
+        self.go(found, engine.jobs[3], 1)
+        assert found.shown is shown
         self.go(found, engine.jobs[3], 10)
-        assert found.is_complete() and found.pixels == pytest.approx(19.5)
+        assert found.is_complete() and found.shown is not shown
 
     def test_paths_wait_until_the_view_rests(self, engine):
         found = changeover.picture({'samples': (0, 4), 'method': 'primitive', 'settings': {}}, 'key')
