@@ -12,6 +12,8 @@ from .refinement import Refinement
 
 # Real-time's samples: the least at which edges and soft shadows are smooth.
 QUICK_SAMPLES = 4
+# Of paths, before they are shown where Combined is not.
+PASS_SAMPLES = 8
 # Seconds without a new view before paths are traced: what is done once for them, such as gathering
 # triangles, would make a turning view stutter.
 REST = 0.5
@@ -25,6 +27,8 @@ class Changeover:
         self._quick = Refinement(quick(request), key)
         self._paths = Refinement(request, key)
         self._begun = time.monotonic()
+        # The error of other passes is not known.
+        self._mixes = request.get('shown_pass', 'Combined') == 'Combined'
 
     @property
     def _now(self):
@@ -33,7 +37,8 @@ class Changeover:
     @property
     def shown(self):
         """What the view shows: float32[H, W, 4], or None."""
-        return self._quick.shown if self._paths.shown is None else self._paths.shown
+        late = self._paths.shown is None or not self._mixes and self._paths.samples < min(PASS_SAMPLES, self._paths.wanted)
+        return self._quick.shown if late else self._paths.shown
 
     @property
     def samples(self):
@@ -86,7 +91,7 @@ class Changeover:
     def start(self, engine):
         """Queue a job for what comes next."""
         if self._now is self._paths:
-            self._paths.smooth = self._quick.pixels
+            self._paths.smooth = self._quick.pixels if self._mixes else None
         self._now.start(engine)
 
     def advance(self):

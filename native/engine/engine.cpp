@@ -58,6 +58,11 @@ void Job::publish(film::Pass pass, std::vector<float> pixels, uint32_t samples) 
   samples_ready_ = samples;
 }
 
+void Job::tell(RenderStats stats) {
+  std::lock_guard lock(mutex_);
+  stats_ = std::move(stats);
+}
+
 void Job::look(std::vector<float> pixels) {
   publish(film::Pass::kCombined, std::move(pixels), 0);
 }

@@ -50,6 +50,7 @@ class Job {
   std::vector<float> read_shown() const;
   // What the finished render kept for merging; null where the request did not ask for it.
   std::shared_ptr<const film::Pieces> pieces() const;
+  // Of a live job that runs, those of the picture that read() gives; of others none before their end.
   RenderStats stats() const;
 
  private:
@@ -57,6 +58,7 @@ class Job {
   void publish(film::Pass pass, std::vector<float> pixels, uint32_t samples);
   void look(std::vector<float> pixels);
   void show(std::vector<float> pixels);
+  void tell(RenderStats stats);
   void begin();
   void end_first_sample();
   void set_status(std::string text, float progress);

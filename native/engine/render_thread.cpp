@@ -2,9 +2,11 @@
 
 #include "base/cancelled.h"
 #include "base/error.h"
+#include "film/display.h"
 #include "film/mixture.h"
 #include "gl/counters.h"
 #include "plan/plan.h"
+#include "plan/shown_pass.h"
 
 #include <algorithm>
 #include <bit>
@@ -73,8 +75,8 @@ void RenderThread::render(Job& job, SharedScene& scene) {
   job.begin();
   try {
     const RenderRequest& request = job.request();
-    const bool looks = request.viewport && !request.force_all_effects && !traces_paths(request) &&
-                       request.debug_picture == ray_picture::Kind::kNone;
+    const bool looks = request.viewport && request.shown_pass == film::Pass::kCombined && !request.force_all_effects &&
+                       !traces_paths(request) && request.debug_picture == ray_picture::Kind::kNone;
     if (looks && !job.cancelled()) look_first(job, scene);
     if (!job.cancelled()) render_frame(job, scene);
   } catch (const Cancelled&) {
@@ -101,7 +103,7 @@ plan::Effects RenderThread::plan_of(const RenderRequest& request, const scene::S
                                         : std::max(int(request.last_sample), 2);
   return plan::make_plan(scene.facts(), {samples, request.soft_shadows, request.filter_penumbrae,
                                          request.force_all_effects, request.passes,
-                                         request.debug_picture, traces_paths(request),
+                                         request.shown_pass, request.debug_picture, traces_paths(request),
                                          {request.paths, request.camera.lens.radius > 0},
                                          request.occlusion, request.cache, request.specular_rays});
 }
@@ -111,9 +113,12 @@ void RenderThread::publish(Job& job, const film::PassSet& passes) {
   // False colours are to be read by their scale.
   const bool light = request.debug_picture == ray_picture::Kind::kNone;
   for (int i = 0; i < film::kPassCount; ++i)
-    if (passes[size_t(i)])
-      job.publish(film::Pass(i), film_.read(film::Pass(i), light ? request.exposure : 1.0f),
-                  film_.samples());
+    if (passes[size_t(i)]) {
+      const film::Pass shown = film::Pass(i) == film::Pass::kCombined ? request.shown_pass : film::Pass(i);
+      std::vector<float> pixels = film_.read(shown, light ? request.exposure : 1.0f);
+      if (shown != film::Pass(i)) pixels = film::display(shown, pixels);
+      job.publish(film::Pass(i), std::move(pixels), film_.samples());
+    }
 }
 
 void RenderThread::publish_live(Job& job) {
@@ -174,8 +179,8 @@ void RenderThread::begin_paths(const RenderRequest& request, const plan::Effects
   film::PassSet passes = request.passes;
   if (request.force_all_effects) passes.set();
   path_tracer_.begin(request.camera, plan,
-                     {request.paths, request.seed, request.filter_width, request.transparent_film,
-                      request.shadow_resolution},
+                     {plan::shortened(request.paths, request.shown_pass), request.seed, request.filter_width,
+                      request.transparent_film, request.shadow_resolution},
                      scene, gpu_scene_, traced_.triangles(), film::with_divisors(passes));
 }
 
@@ -219,6 +224,8 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
   const bool debug = request.debug_picture != ray_picture::Kind::kNone;
   const bool paths = traces_paths(request);
   const bool mixes = !job.over_.smooth.empty();
+  // Errors are those of Combined.
+  const bool estimates = (wanted > 1 || mixes) && !debug && request.shown_pass == film::Pass::kCombined;
   plan::Effects plan;
   std::vector<std::string> warnings;
   bool traces = false;
@@ -230,10 +237,10 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     film::PassSet passes = request.passes;
     if (request.force_all_effects) passes.set();
     film_.start(request.camera.width, request.camera.height, passes,
-                {.moments = (wanted > 1 || mixes) && !debug,
+                {.moments = estimates,
                  .pieces = request.pieces,
                  // Real-time renders all pixels, and stops when the whole picture is good enough.
-                 .noise_threshold = paths && wanted > 1 ? request.noise_threshold : 0});
+                 .noise_threshold = paths && estimates ? request.noise_threshold : 0});
     job.set_status(debug ? "gathering triangles" : "compiling shaders", 0);
     traces = debug || paths || plan::runs(plan, "specular_rays");
     if (traces || plan::runs(plan, "radiance_cache"))
@@ -261,7 +268,29 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
 
   const Clock::time_point trace_start = Clock::now();
   Clock::time_point last_live = start;
-  uint32_t done = 0;
+  uint32_t done = 0, error_at = 1;
+  std::optional<double> live_error;
+  const auto so_far = [&](std::optional<double> error) {
+    RenderStats stats;
+    stats.trace_ms = ms_since(trace_start);
+    const std::vector<gl::PassTime> times = timer_.times();
+    stats.device = context_.device().renderer;
+    stats.width = request.camera.width;
+    stats.height = request.camera.height;
+    stats.samples = done;
+    if (!debug && !paths) realtime_.amend(plan);
+    stats.effects = report(plan, times);
+    for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
+    stats.build_ms = build_ms;
+    stats.total_ms = ms_since(start);
+    stats.rays = debug   ? int64_t(done) * stats.width * stats.height
+                 : paths ? path_tracer_.rays()
+                         : realtime_.rays();
+    stats.memory_bytes = gl::counters().memory_bytes;
+    stats.estimated_error = error;
+    stats.warnings = warnings;
+    return stats;
+  };
   while (done < wanted) {
     job.set_status(fmt::format("sample {} of {}", done + 1, wanted), float(done) / float(wanted));
     try {
@@ -281,6 +310,13 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     }
     if (!film_.all_active() && film_.active_count() == 0) break;
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
+      // It changes slowly, and is not worth a copy of the film each time.
+      if (done >= 2 * error_at) {
+        live_error = film_.estimated_error();
+        error_at = done;
+      }
+      // Before the picture: who sees that finds its statistics.
+      job.tell(so_far(mixes ? mixture_error_ : live_error));
       publish_live(job);
       last_live = Clock::now();
     }
@@ -295,34 +331,20 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
   }
   glFinish();
 
-  RenderStats stats;
-  stats.trace_ms = ms_since(trace_start);
+  RenderStats stats = so_far(std::nullopt);
   publish(job, request.passes);
   if (mixes) mix(job);
-  const std::vector<gl::PassTime> times = timer_.times();
-  stats.device = context_.device().renderer;
-  stats.width = request.camera.width;
-  stats.height = request.camera.height;
-  stats.samples = done;
-  if (!debug && !paths) realtime_.amend(plan);
-  stats.effects = report(plan, times);
-  for (const gl::PassTime& time : times) stats.passes.emplace_back(time.name, time.ms);
-  stats.build_ms = build_ms;
   stats.total_ms = ms_since(start);
-  stats.rays = paths ? path_tracer_.rays() : realtime_.rays();
+  stats.estimated_error = mixes ? mixture_error_ : film_.estimated_error();
   if (!debug && !paths) {
     stats.cache = realtime_.cache_occupied();
     if (std::string warning = realtime_.cache_warning(); !warning.empty())
-      warnings.push_back(std::move(warning));
+      stats.warnings.push_back(std::move(warning));
   }
-  if (debug) stats.rays = int64_t(done) * stats.width * stats.height;
-  stats.memory_bytes = gl::counters().memory_bytes;
-  stats.estimated_error = mixes ? mixture_error_ : film_.estimated_error();
   if (const uint32_t spoiled = film_.spoiled_samples(); spoiled > 0)
-    warnings.push_back(fmt::format("{} samples of pixels were infinite or no number and count as black: "
-                                   "look for extreme values in materials, lamps and the world",
-                                   spoiled));
-  stats.warnings = std::move(warnings);
+    stats.warnings.push_back(fmt::format("{} samples of pixels were infinite or no number and count as black: "
+                                         "look for extreme values in materials, lamps and the world",
+                                         spoiled));
   job.set_status("done", 1);
   std::shared_ptr<const film::Pieces> pieces;
   if (request.pieces)

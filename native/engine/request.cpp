@@ -1,6 +1,7 @@
 #include "engine/request.h"
 
 #include "base/error.h"
+#include "film/display.h"
 
 #include <fmt/ranges.h>
 
@@ -58,6 +59,14 @@ void RenderRequest::check() const {
   if (pieces && noise_threshold > 0)
     fail("pictures with a noise threshold cannot be merged, since their pixels have different samples: "
          "set the noise threshold to 0");
+  if (shown_pass != film::Pass::kCombined) {
+    if (!film::can_show(shown_pass)) fail("there is no picture of the pass that is to be shown: choose another");
+    if (!passes[size_t(shown_pass)])
+      fail("pass '{}' is to be shown, but not rendered: please report it", film::info(shown_pass).name);
+    if (debug_picture != ray_picture::Kind::kNone || occlusion.picture != ambient_occlusion::Picture::kNone ||
+        cache.picture != radiance_cache::Picture::kNone)
+      fail("a debug picture takes the place of all passes: show Combined with it");
+  }
   if (!ray_picture::known(debug_picture))
     fail("there is no debug picture number {}: choose one of {}", int(debug_picture),
          fmt::join(ray_picture::kKindNames, ", "));

@@ -29,6 +29,9 @@ struct RenderRequest {
   uint32_t first_sample = 0, last_sample = 1;  // half-open
   uint32_t seed = 0;
   film::PassSet passes;
+  // In a 3D View: what read(Combined) gives in its place, as a picture to look at (film/display.h). One of
+  // `passes`; only what it needs runs.
+  film::Pass shown_pass = film::Pass::kCombined;
   float filter_width = 1.5f;    // pixels, to each side
   float exposure = 1.0f;        // multiplies light passes
   bool force_all_effects = false;

@@ -5,6 +5,7 @@
 #include "radiance_cache/decide.h"
 #include "rasterize/decide.h"
 #include "ray_picture/decide.h"
+#include "plan/shown_pass.h"
 #include "realtime/decide.h"
 #include "specular_rays/decide.h"
 
@@ -35,6 +36,7 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
     append(specular_rays::decide(facts, settings.specular_rays));
   }
   append(film::decide(settings.passes));
+  leave_out(all, settings.shown_pass, settings.path_tracing);
   if (settings.force_all_effects)
     for (Effect& effect : all)
       if (!effect.runs && !effect.by_choice) {

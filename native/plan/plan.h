@@ -18,6 +18,7 @@ struct PlanSettings {
   bool filter_penumbrae = false;   // by blocker distance, instead of a point of each lamp a sample
   bool force_all_effects = false;  // runs what the scene cannot show too; the picture stays the same
   film::PassSet passes;
+  film::Pass shown_pass = film::Pass::kCombined;  // what the picture is of: the rest is left out
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
   bool path_tracing = false;       // Primitive tracing, not Real-time
   path_tracer::DecideSettings paths;

@@ -139,6 +139,10 @@ engine::RenderRequest request(const py::dict& dict) {
       fail("there is no pass '{}': see the README for those that there are", name);
     r.passes.set(size_t(pass));
   }
+  const auto shown = get<std::string>(dict, "shown_pass", "Combined");
+  r.shown_pass = film::find_pass(shown);
+  if (r.shown_pass == film::Pass::kCount)
+    fail("there is no pass '{}' to be shown: see the README for those that there are", shown);
   const auto method = get<std::string>(dict, "method", "realtime");
   if (method != "realtime" && method != "primitive")
     fail("method '{}' is not part of this version: choose 'realtime' or 'primitive'", method);

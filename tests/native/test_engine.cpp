@@ -178,6 +178,50 @@ TEST(EngineJobs, LiveOnesPublishAGrowingPicture) {
   EXPECT_EQ(job->read(Pass::kCombined).size(), 128u * 128 * 4);
 }
 
+TEST(EngineJobs, LiveOnesTellOfThePictureThatIsThere) {
+  engine::Engine& engine = shared_engine();
+  set_scene(engine);
+  engine::RenderRequest r = endless();
+  r.live = true;
+  const auto job = engine.render(r);
+  const Clock::time_point start = Clock::now();
+  while (job->samples_ready() == 0 && seconds_since(start) < 20)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const engine::RenderStats first = job->stats();
+  EXPECT_GE(first.samples, 1u);
+  EXPECT_EQ(first.width, 128);
+  EXPECT_FALSE(first.effects.empty());
+  EXPECT_FALSE(first.device.empty());
+  const auto time = [](const engine::RenderStats& stats) {
+    double ms = 0;
+    for (const engine::EffectReport& effect : stats.effects) ms += effect.ms;
+    return ms;
+  };
+  EXPECT_GT(time(first), 0);
+  engine::RenderStats later = first;
+  while (!later.estimated_error && seconds_since(start) < 20) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const uint32_t ready = job->samples_ready();
+    later = job->stats();
+    EXPECT_GE(later.samples, ready);
+  }
+  EXPECT_TRUE(later.estimated_error);
+  EXPECT_GT(later.samples, first.samples);
+  EXPECT_GT(time(later), time(first));
+  job->cancel();
+  EXPECT_TRUE(job->wait(10));
+}
+
+TEST(EngineJobs, OthersTellNothingBeforeTheirEnd) {
+  engine::Engine& engine = shared_engine();
+  set_scene(engine);
+  const auto job = engine.render(endless());
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(job->stats().samples, 0u);
+  job->cancel();
+  EXPECT_TRUE(job->wait(10));
+}
+
 TEST(EngineJobs, NothingIsReadBeforeItIsThere) {
   engine::Engine& engine = shared_engine();
   set_scene(engine);

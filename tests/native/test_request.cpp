@@ -53,6 +53,16 @@ TEST(RequestCheck, RefusesWhatMakesNoSense) {
     expect_refused([&](auto& r) { r.time_budget = budget; }, "budget");
     expect_refused([&](auto& r) { r.noise_threshold = budget; }, "threshold");
   }
+  expect_refused([](auto& r) { r.shown_pass = film::Pass::kCount; }, "no picture of the pass");
+  expect_refused([](auto& r) { r.shown_pass = film::Pass::kDepth; }, "no picture of the pass");
+  expect_refused([](auto& r) { r.shown_pass = film::Pass::kNormal; }, "'Normal' is to be shown, but not rendered");
+  expect_refused(
+      [](auto& r) {
+        r.shown_pass = film::Pass::kNormal;
+        r.passes.set(size_t(r.shown_pass));
+        r.debug_picture = ray_picture::Kind::kSteps;
+      },
+      "debug picture");
   expect_refused([](auto& r) { r.pieces = true, r.noise_threshold = 0.1; }, "cannot be merged");
 }
 
