@@ -18,17 +18,21 @@ bl_info = {
 
 def register():
     """Make the engine, its properties and its panels known to Blender."""
-    from . import engine, properties, user_interface
+    from . import engine, overlay, properties, user_interface, view_shading
 
     properties.register()
     engine.register()
     user_interface.register()
+    view_shading.register()
+    overlay.register()
 
 
 def unregister():
     """Take back what `register` did and free the native engine."""
-    from . import engine, native, properties, user_interface
+    from . import engine, native, overlay, properties, user_interface, view_shading
 
+    overlay.unregister()
+    view_shading.unregister()
     user_interface.unregister()
     engine.unregister()
     properties.unregister()

@@ -37,8 +37,13 @@ class Changeover:
     @property
     def shown(self):
         """What the view shows: float32[H, W, 4], or None."""
-        late = self._paths.shown is None or not self._mixes and self._paths.samples < min(PASS_SAMPLES, self._paths.wanted)
-        return self._quick.shown if late else self._paths.shown
+        few = not self._mixes and self._paths.samples < min(PASS_SAMPLES, self._paths.wanted)
+        return self._quick.shown if few or self._paths.shown is None else self._paths.shown
+
+    @property
+    def stage(self):
+        """The refinement that is under way, or the last."""
+        return self._now
 
     @property
     def samples(self):

@@ -210,6 +210,26 @@ def draw_pixels(pixels, left, bottom, width, height):
     gpu.state.blend_set('NONE')
 
 
+def draw_text(lines, left, bottom, size, spacing, color):
+    """Draw lines of text with a shadow, the last one at (left, bottom) of the region.
+
+    `size` is in pixels, `spacing` from line to line in sizes, `color` RGB.
+    """
+    import blf
+
+    font = 0
+    # With two arguments the size is in pixels of 72 to an inch; the third has gone in 4.0.
+    blf.size(font, size)
+    blf.color(font, *color[:3], 1.0)
+    blf.enable(font, blf.SHADOW)
+    blf.shadow(font, 3, 0.0, 0.0, 0.0, 0.8)
+    blf.shadow_offset(font, 1, -1)
+    for index, line in enumerate(reversed(lines)):
+        blf.position(font, left, bottom + index * spacing * size, 0.0)
+        blf.draw(font, line)
+    blf.disable(font, blf.SHADOW)
+
+
 def set_file_format(settings, file_format):
     """Choose 'PNG' or 'OPEN_EXR_MULTILAYER' in an ImageFormatSettings."""
     if hasattr(settings, 'media_type'):

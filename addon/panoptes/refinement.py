@@ -23,7 +23,8 @@ class Refinement:
         self.key = key
         self.pixels = self.shown = self.smooth = None
         self.samples = 0
-        self.warnings = ()
+        # What the newest job has told of the samples that are there; {} before.
+        self.stats = {}
         self.first_seconds = 0.0
         self._request = request
         self._first, self._last = request['samples']
@@ -32,6 +33,21 @@ class Refinement:
         self._base_samples = 0
         self._job = None
         self._started = 0.0
+
+    @property
+    def warnings(self):
+        """What the newest job had to say."""
+        return tuple(self.stats.get('warnings', ()))
+
+    @property
+    def method(self):
+        """How it is rendered: 'realtime' or 'primitive'."""
+        return self._request['method']
+
+    @property
+    def stage(self):
+        """The refinement that is under way: this one."""
+        return self
 
     @property
     def wanted(self):
@@ -90,9 +106,9 @@ class Refinement:
         if ended:
             self._job = None
             job.finish()
-            self.warnings = tuple(job.stats().get('warnings', ()))
         if ended or self._base_samples + job.samples_ready() > self.samples:
             self._fetch(job)
+            self.stats = job.stats()
         elif self.pixels is None and job.has_look():
             self.pixels = self.shown = job.read('Combined')
 

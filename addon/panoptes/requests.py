@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from . import cameras, debug_pictures, lens, occlusion, radiance_cache, specular_rays
+from . import cameras, debug_pictures, lens, occlusion, radiance_cache, specular_rays, view_shading
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
@@ -89,12 +89,13 @@ def _filter_width(render, warn):
     return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
 
 
-def build(depsgraph, size, samples, view, projection, passes, warn, camera=None, viewport=False):
+def build(depsgraph, size, samples, view, projection, passes, warn, camera=None, viewport=False, by_paths=True):
     """Return a request for a dependency graph's scene.
 
     `size` is (width, height) in pixels, `samples` (first, last exclusive), `view` world to camera
     and `projection` camera to clip space, both 4x4 matrices; `passes` are names. `camera` is the
-    evaluated camera through whose lens the picture is seen, or None: then everything is sharp.
+    evaluated camera through whose lens the picture is seen, or None: then everything is sharp. Without
+    `by_paths` Real-time knows all that is asked for.
     """
     width, height = size
     if width < 1 or height < 1:
@@ -105,7 +106,7 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None,
         raise BadRequest("The camera's place or lens is not a number; clear its transform or choose "
                          'another camera.')
     scene = depsgraph.scene
-    used = method(scene.panoptes, viewport)
+    used = method(scene.panoptes, viewport) if by_paths else 'realtime'
     if scene.panoptes.method == 'fragment':
         warn('Fragment tracing does not work yet; Real-time is used instead.')
     settings = _settings(depsgraph, used, warn)
@@ -255,10 +256,10 @@ def _view_rectangle(scene, space, region, region_data):
     return (left, bottom, right, top) if left < right and bottom < top else whole
 
 
-def viewport(depsgraph, region, region_data, space, pixel, warn):
+def viewport(depsgraph, region, region_data, space, pixel, warn, shown=view_shading.COMBINED):
     """Return (request, (left, bottom, width, height)) of a 3D View: the place is in the region's pixels.
 
-    One pixel of the picture covers `pixel` x `pixel` of the region.
+    One pixel of the picture covers `pixel` x `pixel` of the region; `shown` is the `ViewPass` that it shows.
     """
     scene = depsgraph.scene
     rectangle = left, bottom, right, top = _view_rectangle(scene, space, region, region_data)
@@ -266,7 +267,10 @@ def viewport(depsgraph, region, region_data, space, pixel, warn):
     projection = _cropped(np.array(region_data.window_matrix, np.float64), rectangle, region.width,
                           region.height)
     request = build(depsgraph, size, (0, scene.panoptes.viewport_samples), region_data.view_matrix,
-                    projection, ['Combined'], warn, _looked_through(depsgraph, space, region_data), viewport=True)
+                    projection, list(dict.fromkeys(('Combined', shown.name))), warn,
+                    _looked_through(depsgraph, space, region_data), viewport=True, by_paths=shown.by_paths)
+    if shown is not view_shading.COMBINED:
+        request['shown_pass'] = shown.name
     # The picture is shown while it refines.
     request['live'] = True
     # It comes after others like it, whose light it may keep.

@@ -7,11 +7,14 @@ shown anything yet is left to finish its first sample for a while, so that somet
 view turns.
 """
 
+import time
+
 import bpy
 
-from . import changeover, compat, requests, session
+from . import changeover, compat, requests, session, statistics_text, view_shading
 from .pace import Pace
 from .sync import SceneSync
+from .time_left import TimeLeft
 
 # Seconds for which an outdated job may go on when it has not shown anything yet.
 _GRACE = 1.0
@@ -54,6 +57,12 @@ class Viewport:
         self._failure = ''
         self._sync_warnings = ()
         self._request_warnings = ()
+        # The part of the picture under way, and how long it will take.
+        self._stage, self._time_left = None, None
+        # What the view shows, by its name in menus; '' for Combined.
+        self._label = ''
+        # The address of the region that was drawn last, and when.
+        self.region, self.drawn = 0, 0.0
         # Whether a timer waits for news.
         self.polling = False
         session.viewports.add(self)
@@ -83,6 +92,7 @@ class Viewport:
 
     def draw(self, engine, context, depsgraph):
         """Draw the newest picture of the current view and keep rendering."""
+        self.region, self.drawn = context.region.as_pointer(), time.monotonic()
         with session.exclusive(wait=False) as held:
             if not held:
                 engine.update_stats('Panoptes', 'Waiting for the final render to finish')
@@ -99,14 +109,15 @@ class Viewport:
         self._draw_last()
 
     def _draw(self, engine, context, depsgraph):
-        warnings = []
+        warnings, shown = [], view_shading.shown(depsgraph.scene, _space(context))
         request, rectangle = requests.viewport(
             depsgraph, context.region, context.region_data, _space(context),
-            max(engine.get_preview_pixel_size(depsgraph.scene), 1), warnings.append)
+            max(engine.get_preview_pixel_size(depsgraph.scene), 1), warnings.append, shown)
         if self._failure and self._key == _key(request, self._state):
             return
         self._failure = ''
         self._request_warnings = tuple(warnings)
+        self._label = '' if shown is view_shading.COMBINED else shown.label
         if not self._synced:
             self._sync(context, depsgraph)
         # A sample of an outdated view is better than the one before it.
@@ -163,9 +174,27 @@ class Viewport:
         if picture.shown is not None:
             self._pixels, self._rectangle = picture.shown, self._rectangle_ahead
 
+    def _seconds_left(self):
+        """Return how long the part of the picture that is under way will still take, or None."""
+        stage = self._picture.stage
+        if stage is not self._stage:
+            self._stage, self._time_left = stage, TimeLeft(time.monotonic())
+        if not stage.is_running():
+            return None
+        return self._time_left.seconds(stage.samples / stage.wanted, time.monotonic())
+
+    def statistics(self, letters):
+        """Return lines of text about the picture: how far it is, what takes the time, what is skipped."""
+        if self._failure or self._picture is None:
+            return [self._failure] if self._failure else []
+        stage = self._picture.stage
+        return statistics_text.lines(stage.stats, stage.method, stage.samples, stage.wanted, self._picture.key[1],
+                                     self._seconds_left(), letters)
+
     def _status(self):
         picture = self._picture
-        text = picture.status()
+        text = (f'{self._label}: ' if self._label else '') + picture.status()
+        text += statistics_text.left(self._seconds_left())
         if picture.key[1] > 1:
             text += f' at 1/{picture.key[1]} of the resolution'
         if not (picture.is_complete() or picture.is_running()) and picture.is_ready():

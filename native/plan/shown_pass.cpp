@@ -1,7 +1,5 @@
 #include "plan/shown_pass.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <string_view>
 
@@ -74,7 +72,7 @@ void leave_out(Effects& effects, Pass shown, bool path_tracing) {
     if (!effect.runs || (group & needed) == group) continue;
     effect.runs = false;
     effect.by_choice = true;
-    effect.reason = fmt::format("the pass that is shown, {}, has nothing of it", film::info(shown).name);
+    effect.reason = "the pass that is shown has nothing of it";
   }
 }
 
