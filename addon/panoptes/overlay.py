@@ -53,7 +53,8 @@ def wants_text(space):
 
 
 def _viewport(region):
-    """Return the `Viewport` that a region (its address) shows, or None. A region's address can be used again."""
+    """Return the `Viewport` that a region (its address) shows, or None."""
+    # The address of a region that was closed can be another's now.
     found = [view for view in list(session.viewports) if view.region == region]
     return max(found, key=lambda view: view.drawn, default=None)
 

@@ -89,7 +89,8 @@ def _filter_width(render, warn):
     return min(max(render.filter_size, 0.01), _WIDEST_FILTER)
 
 
-def build(depsgraph, size, samples, view, projection, passes, warn, camera=None, viewport=False, by_paths=True):
+def build(depsgraph, size, samples, view, projection, passes, warn, camera=None, viewport=False,
+          by_paths=True):
     """Return a request for a dependency graph's scene.
 
     `size` is (width, height) in pixels, `samples` (first, last exclusive), `view` world to camera

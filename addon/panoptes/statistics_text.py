@@ -7,10 +7,11 @@ METHODS = {'realtime': 'Real-time', 'primitive': 'Paths'}
 
 # So many effects are named with their time.
 _MOST_TIMED = 4
+_MOST_OF_A_REASON = 3
 _MORE = ' and {} more'
 # Of what is skipped, an artist looks for these first.
-_MAIN = ('radiance_cache', 'ambient_occlusion', 'specular_rays', 'indirect_light', 'world_light', 'direct_light',
-         'emissive_light', 'depth_of_field')
+_MAIN = ('radiance_cache', 'ambient_occlusion', 'specular_rays', 'indirect_light', 'world_light',
+         'direct_light', 'emissive_light', 'depth_of_field')
 
 
 def lines(stats, method, samples, wanted, coarseness=1, seconds_left=None, letters=150):
@@ -59,7 +60,10 @@ def _times(stats):
 
 
 def _skipped(stats, letters):
-    """Return the line of what was skipped and why; '' for nothing. What has the same reason stands together."""
+    """Return the line of what was skipped and why; '' for nothing.
+
+    Effects that have the same reason stand together.
+    """
     by_reason = {}
     idle = [e for e in stats.get('effects', ()) if not e['runs'] and not e['name'].startswith('pass_')]
     for effect in sorted(idle, key=lambda e: _MAIN.index(e['name']) if e['name'] in _MAIN else len(_MAIN)):
@@ -68,6 +72,7 @@ def _skipped(stats, letters):
         return ''
     text, named = 'Skipped: ', 0
     for reason, names in by_reason.items():
+        names = names[:_MOST_OF_A_REASON]
         part = f'{", ".join(names)} ({reason})'
         if named and len(text) + len(part) + len(_MORE) > letters:
             break

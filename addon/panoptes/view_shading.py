@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each 3D View shows in Rendered shading: `space.shading.panoptes`, and its part of the shading popover."""
+"""What each 3D View shows in Rendered shading: `space.shading.panoptes`, and its place in the popover."""
 
 from typing import NamedTuple
 
@@ -23,15 +23,18 @@ class ViewPass(NamedTuple):
 
 
 VIEW_PASSES = (
-    ViewPass('COMBINED', 'Combined', 'The finished picture', 'Combined', True),
+    ViewPass('COMBINED', 'Combined', 'The finished picture', 'Combined', by_paths=True),
     ViewPass('EMISSION', 'Emission', 'What surfaces emit themselves', 'Emit'),
     ViewPass('ENVIRONMENT', 'Environment', 'The world behind the scene', 'Env'),
-    ViewPass('AO', 'Ambient Occlusion', 'How open surfaces are to what is around them: white is open', 'AO', True),
-    ViewPass('NORMAL', 'Normal', 'Where surfaces face: red, green and blue are X, Y and Z of the world, with grey for '
-                                 '0. The view transform Standard leaves the colours as they are', 'Normal'),
-    ViewPass('DIFFUSE_DIRECT', 'Diffuse Direct', 'Light on white matt surfaces straight from lamps, glowing surfaces '
-                                                 'and the world', 'DiffDir', True),
-    ViewPass('DIFFUSE_INDIRECT', 'Diffuse Indirect', 'Light on white matt surfaces by way of others', 'DiffInd', True),
+    ViewPass('AO', 'Ambient Occlusion', 'How open surfaces are to what is around them: white is open', 'AO',
+             by_paths=True),
+    ViewPass('NORMAL', 'Normal', 'Where surfaces face: red, green and blue are X, Y and Z of the world, with '
+                                 'grey for 0. The view transform Standard leaves the colours as they are',
+             'Normal'),
+    ViewPass('DIFFUSE_DIRECT', 'Diffuse Direct', 'Light on white matt surfaces straight from lamps, glowing '
+                                                 'surfaces and the world', 'DiffDir', by_paths=True),
+    ViewPass('DIFFUSE_INDIRECT', 'Diffuse Indirect', 'Light on white matt surfaces by way of others', 'DiffInd',
+             by_paths=True),
     ViewPass('DIFFUSE_COLOR', 'Diffuse Color', 'The colour of matt surfaces without light', 'DiffCol'),
 )
 COMBINED = VIEW_PASSES[0]
@@ -43,11 +46,11 @@ class PanoptesViewShading(bpy.types.PropertyGroup):
 
     render_pass: EnumProperty(
         name='Render Pass', description='What this 3D View shows. Only what that needs is computed',
-        items=[(entry.identifier, entry.label, entry.description) for entry in VIEW_PASSES], default='COMBINED')
+        items=[entry[:3] for entry in VIEW_PASSES], default='COMBINED')
     show_statistics: BoolProperty(
         name='Render Statistics',
-        description='Write into the corner of this 3D View how far its picture has come, what takes the time and what '
-                    'is skipped, while overlays are shown',
+        description='Write into the corner of this 3D View how far its picture has come, what takes the time '
+                    'and what is skipped, while overlays are shown',
         default=False)
 
 

@@ -188,8 +188,8 @@ class Viewport:
         if self._failure or self._picture is None:
             return [self._failure] if self._failure else []
         stage = self._picture.stage
-        return statistics_text.lines(stage.stats, stage.method, stage.samples, stage.wanted, self._picture.key[1],
-                                     self._seconds_left(), letters)
+        return statistics_text.lines(stage.stats, stage.method, stage.samples, stage.wanted,
+                                     self._picture.key[1], self._seconds_left(), letters)
 
     def _status(self):
         picture = self._picture

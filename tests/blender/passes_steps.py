@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs inside a Blender with a window: what a 3D View shows by its Render Pass, and writes into its corner."""
+"""Runs inside a Blender with a window: what a 3D View shows by its Render Pass, and its statistics."""
 
 import os
 import sys
@@ -54,16 +54,16 @@ def start():
 
 
 def picture():
-    """Return the mean colour and how much it varies, with what the status line says; None while it is not done."""
+    """Return the mean colour, how much it varies and what is said; None while it is not done."""
     found = pictures()
     if not found:
         return None
     # Sums of so many pixels are inexact otherwise.
     colors = found[0][..., :3].astype(np.float64)
     view = viewports()[0]
-    return {'mean': colors.mean(axis=(0, 1)).tolist(), 'spread': float(np.ptp(colors.reshape(-1, 3), axis=0).max()),
-            'status': view._status(), 'skipped': [e['name'] for e in view._picture.stage.stats['effects']
-                                                  if not e['runs']]}
+    skipped = [e['name'] for e in view._picture.stage.stats['effects'] if not e['runs']]
+    return {'mean': colors.mean(axis=(0, 1)).tolist(), 'spread': float(np.ptp(colors, axis=(0, 1)).max()),
+            'status': view._status(), 'skipped': skipped}
 
 
 def show(identifier):
@@ -122,7 +122,7 @@ def break_the_text():
 
 def unregister():
     area('VIEW_3D').spaces[0].shading.type = 'SOLID'
-    bpy.context.scene.render.engine = 'CYCLES' if hasattr(bpy.context.scene, 'cycles') else 'BLENDER_WORKBENCH'
+    bpy.context.scene.render.engine = 'BLENDER_WORKBENCH'
     panoptes.unregister()
     bpy.ops.wm.redraw_timer(type='DRAW_WIN_SWAP', iterations=2)
 

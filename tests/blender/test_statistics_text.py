@@ -11,8 +11,8 @@ def effect(name, ms=None, reason='asked for'):
 
 
 def stats(effects=(), passes=(), samples=4, error=None):
-    return {'samples': samples, 'effects': list(effects), 'passes': [{'name': n, 'ms': ms} for n, ms in passes],
-            'estimated_error': error}
+    return {'samples': samples, 'effects': list(effects), 'estimated_error': error,
+            'passes': [{'name': name, 'ms': ms} for name, ms in passes]}
 
 
 def lines(found, method='realtime', samples=4, wanted=16, **more):
@@ -37,7 +37,8 @@ class TestProgress:
 class TestError:
     """The second line."""
 
-    @pytest.mark.parametrize(('error', 'text'), [(None, '—'), (0.0, '0 %'), (0.01234, '1.23 %'), (2.5, '250 %')])
+    @pytest.mark.parametrize(('error', 'text'), [(None, '—'), (0.0, '0 %'), (0.01234, '1.23 %'),
+                                                 (2.5, '250 %')])
     def test_error(self, error, text):
         assert lines(stats(error=error))[1] == f'Estimated error {text}'
 
@@ -52,8 +53,8 @@ class TestTimes:
         effects = [effect(name, ms) for name, ms in
                    (('a', 4.0), ('b_shadows', 40.0), ('c', 8.0), ('d', 20.0), ('e', 12.0), ('f', 0.0))]
         passes = [('a', 4.0), ('b_shadows', 40.0), ('c', 8.0), ('d', 20.0), ('e', 12.0), ('compose', 6.0)]
-        assert lines(stats(effects, passes))[2] == 'A sample: b shadows 10.0 ms, d 5.0 ms, e 3.0 ms, c 2.0 ms, ' \
-                                                   'the rest 2.5 ms'
+        assert lines(stats(effects, passes))[2] == (
+            'A sample: b shadows 10.0 ms, d 5.0 ms, e 3.0 ms, c 2.0 ms, the rest 2.5 ms')
 
     def test_no_rest(self):
         assert lines(stats([effect('a', 4.0)], [('a', 4.0)]))[2] == 'A sample: a 1.0 ms'
@@ -71,7 +72,8 @@ class TestSkipped:
         found = stats([effect('layers', reason='no coat'), effect('world_light', reason='the world is black'),
                        effect('world_background', reason='the world is black'), effect('surfaces', 1.0),
                        effect('pass_depth', reason='not enabled in the view layer')])
-        assert lines(found)[-1] == 'Skipped: world light, world background (the world is black), layers (no coat)'
+        assert lines(found)[-1] == (
+            'Skipped: world light, world background (the world is black), layers (no coat)')
 
     def test_one_line_tells_how_many_more(self):
         found = stats([effect(f'effect_{i}', reason=f'reason number {i} of many') for i in range(30)])
@@ -88,6 +90,10 @@ class TestSkipped:
     def test_what_artists_look_for_comes_first(self):
         found = stats([effect('layers', reason='no coat'), effect('radiance_cache', reason='switched off')])
         assert lines(found)[-1] == 'Skipped: radiance cache (switched off), layers (no coat)'
+
+    def test_one_reason_does_not_fill_the_line(self):
+        found = stats([effect(f'effect_{i}', reason='the same') for i in range(9)])
+        assert lines(found)[-1] == 'Skipped: effect 0, effect 1, effect 2 (the same) and 6 more'
 
     def test_nothing_skipped(self):
         assert len(lines(stats([effect('a', 4.0)], [('a', 4.0)]))) == 3

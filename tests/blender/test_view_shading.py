@@ -89,8 +89,9 @@ class TestRequest:
         found = request(entry.identifier)
         assert found['passes'] == ['Combined', entry.name] and found['shown_pass'] == entry.name
 
-    @pytest.mark.parametrize(('identifier', 'stages'), [('NORMAL', 1), ('DIFFUSE_COLOR', 1), ('EMISSION', 1),
-                                                        ('DIFFUSE_DIRECT', 2), ('DIFFUSE_INDIRECT', 2), ('AO', 2)])
+    @pytest.mark.parametrize(('identifier', 'stages'), [
+        ('NORMAL', 1), ('DIFFUSE_COLOR', 1), ('EMISSION', 1), ('ENVIRONMENT', 1), ('DIFFUSE_DIRECT', 2),
+        ('DIFFUSE_INDIRECT', 2), ('AO', 2)])
     def test_paths_take_over_where_light_counts(self, scene, identifier, stages):
         scene.panoptes.method = 'primitive'
         found = request(identifier)
@@ -135,7 +136,8 @@ class TestOverlay:
         window = region('WINDOW', 100, 50, 800, 600)
         assert overlay.free_corner(window, [window]) == (0, 0)
         # A header above, a side bar on the right, and what is closed are not in the way.
-        others = [region('HEADER', 100, 624, 800, 26), region('UI', 700, 50, 200, 600), region('TOOLS', 100, 50, 1, 600)]
+        others = [region('HEADER', 100, 624, 800, 26), region('UI', 700, 50, 200, 600),
+                  region('TOOLS', 100, 50, 1, 600)]
         assert overlay.free_corner(window, others) == (0, 0)
         others += [region('TOOLS', 100, 50, 60, 600), region('HEADER', 100, 50, 800, 26)]
         assert overlay.free_corner(window, others) == (60, 26)
@@ -145,9 +147,9 @@ class TestOverlay:
     def test_draws_the_text_of_its_region(self, monkeypatch):
         drawn = []
         monkeypatch.setattr(overlay.compat, 'draw_text', lambda *arguments: drawn.append(arguments))
-        views = [types.SimpleNamespace(region=7, drawn=when, statistics=lambda letters, when=when: [f'drawn at {when}'])
-                 for when in (1.0, 3.0, 2.0)]
-        views.append(types.SimpleNamespace(region=8, drawn=9.0, statistics=lambda letters: ['another']))
+        views = [types.SimpleNamespace(region=address, drawn=when,
+                                       statistics=lambda letters, when=when: [f'drawn at {when}'])
+                 for address, when in ((7, 1.0), (7, 3.0), (7, 2.0), (8, 9.0))]
         monkeypatch.setattr(session, 'viewports', views)
         region = types.SimpleNamespace(x=0, y=0, width=400, height=300, type='WINDOW', as_pointer=lambda: 7)
         context = types.SimpleNamespace(
