@@ -60,9 +60,12 @@ def use_factory(factory):
 def engine(use='scene'):
     """Return the engine for 'scene' (final renders and 3D Views) or 'preview' (Blender's icons).
 
-    It is created when first asked for; raises `Unavailable`.
+    It is created when first asked for, and anew when the graphics driver has failed; raises
+    `Unavailable`.
     """
     with _lock:
+        if use in _engines and _engines[use].spoiled:
+            _engines.pop(use).close()
         if use not in _engines:
             if _factory is not None:
                 _engines[use] = _factory()

@@ -194,7 +194,7 @@ void Engine::run(const gl::ContextOptions& options, std::function<void(std::stri
       }
       continue;
     }
-    renderer->render(*job, scene_);
+    renderer->render(*job, scene_, spoiled_);
   }
 }
 

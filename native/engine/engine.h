@@ -91,6 +91,10 @@ class Engine {
 
   const gl::DeviceInfo& device() const { return device_; }
 
+  // Whether the graphics driver has failed or run out of memory: what the engine holds there may be incomplete, and
+  // another engine should take its place.
+  bool spoiled() const { return spoiled_; }
+
   // Cancels what runs, ends the thread. Idempotent; every later call throws Error.
   void close();
 
@@ -126,7 +130,7 @@ class Engine {
   std::condition_variable queue_condition_;
   std::deque<std::shared_ptr<Job>> queue_;
   std::shared_ptr<Job> current_;
-  std::atomic<bool> closed_{false};
+  std::atomic<bool> closed_{false}, spoiled_{false};
   bool images_waiting_ = false;  // guarded by queue_mutex_
   std::thread thread_;
 };

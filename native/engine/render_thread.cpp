@@ -70,7 +70,7 @@ RenderThread::RenderThread(const gl::ContextOptions& options)
       realtime_(context_.device(), programs_, timer_), traced_(context_.device()),
       path_tracer_(context_.device(), programs_, timer_) {}
 
-void RenderThread::render(Job& job, SharedScene& scene) {
+void RenderThread::render(Job& job, SharedScene& scene, std::atomic<bool>& spoiled) {
   std::string error;
   job.begin();
   try {
@@ -80,6 +80,9 @@ void RenderThread::render(Job& job, SharedScene& scene) {
     if (looks && !job.cancelled()) look_first(job, scene);
     if (!job.cancelled()) render_frame(job, scene);
   } catch (const Cancelled&) {
+  } catch (const DriverError& e) {
+    error = e.what();
+    spoiled = true;
   } catch (const std::bad_alloc&) {
     error = "the computer ran out of memory: lower the resolution or simplify the scene";
   } catch (const std::exception& e) {

@@ -22,8 +22,9 @@ class RenderThread {
 
   const gl::DeviceInfo& device() const { return context_.device(); }
 
-  // Renders the job and ends it, whatever happens. Holds the scene only while it is uploaded.
-  void render(Job& job, SharedScene& scene);
+  // Renders the job and ends it, whatever happens. Holds the scene only while it is uploaded. Before the job ends,
+  // `spoiled` becomes true if the driver has failed.
+  void render(Job& job, SharedScene& scene, std::atomic<bool>& spoiled);
   // Uploads an image that waits, if there is one; what fails is left for the frame that needs it.
   bool upload_ahead(SharedScene& scene);
 

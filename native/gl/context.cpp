@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <vector>
 
 namespace panoptes::gl {
@@ -55,11 +56,18 @@ EGLContext try_context(EGLDisplay display) {
   EGLint major = 0, minor = 0;
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) return EGL_NO_CONTEXT;
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;  // per thread
+  // The last pair makes a driver that restarts tell so; not all can.
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
                                EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                               EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET,
                                EGL_NONE};
-  EGLContext context =
-      eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+  constexpr size_t kSilent = std::size(attributes) - 3;
+  EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+  if (context == EGL_NO_CONTEXT) {
+    std::vector<EGLint> silent(attributes, attributes + kSilent);
+    silent.push_back(EGL_NONE);
+    context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, silent.data());
+  }
   if (context == EGL_NO_CONTEXT) return EGL_NO_CONTEXT;
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     eglDestroyContext(display, context);
@@ -149,14 +157,19 @@ Context::~Context() {
 
 void check_errors(const char* where) {
   const GLenum error = glGetError();
+  if (error == GL_CONTEXT_LOST || glGetGraphicsResetStatus() != GL_NO_ERROR)
+    fail_driver("the graphics driver has restarted in '{}': render again; if that happens again, update it, or lower the "
+                "resolution or the samples",
+                where);
   if (error == GL_NO_ERROR) return;
-  while (glGetError() != GL_NO_ERROR) {
+  // One after the other, but a driver that is lost may never end.
+  for (int i = 0; i < 100 && glGetError() != GL_NO_ERROR; ++i) {
   }
   if (error == GL_OUT_OF_MEMORY)
-    fail("the graphics driver ran out of memory in '{}': lower the resolution or the shadow "
-         "resolution, or close other programs",
-         where);
-  fail("the graphics driver reported error 0x{:04x} in '{}': please report it with the scene and "
+    fail_driver("the graphics driver ran out of memory in '{}': lower the resolution or the shadow "
+                "resolution, or close other programs",
+                where);
+  fail_driver("the graphics driver reported error 0x{:04x} in '{}': please report it with the scene and "
        "the driver's version",
        error, where);
 }

@@ -35,9 +35,9 @@ int bytes_per_texel(GLenum format) {
 void check_allocation(int64_t bytes, const char* what) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;
-  fail("the graphics driver could not allocate {} MiB for a {}: lower the resolution, the texture "
-       "sizes or the shadow resolution",
-       (bytes >> 20) + 1, what);
+  fail_driver("the graphics driver could not allocate {} MiB for a {}: lower the resolution, the texture "
+              "sizes or the shadow resolution",
+              (bytes >> 20) + 1, what);
 }
 
 }  // namespace
@@ -49,9 +49,9 @@ Buffer::Buffer(int64_t bytes, const void* data) {
   const GLenum error = glGetError();
   if (error != GL_NO_ERROR) {
     glDeleteBuffers(1, &id_);
-    fail("the graphics driver could not allocate {} MiB for a buffer: simplify the scene, or lower "
-         "the resolution",
-         (bytes_ >> 20) + 1);
+    fail_driver("the graphics driver could not allocate {} MiB for a buffer: simplify the scene, or lower "
+                "the resolution",
+                (bytes_ >> 20) + 1);
   }
   ++counters().buffers;
   counters().allocated(bytes_);

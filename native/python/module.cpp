@@ -225,6 +225,8 @@ py::class_<Engine> bind_engine(py::module_& m) {
            }),
            py::arg("prefer_software") = false)
       .def_property_readonly("device", [](const Engine& e) { return e.device().renderer; })
+      .def_property_readonly("spoiled", &Engine::spoiled,
+                             "Whether the graphics driver has failed: another engine should take its place.")
       .def("close", &Engine::close, no_gil, "Stops the render thread. Idempotent.")
       .def("counters", [](const Engine&) { return counters(); })
       .def("remove_mesh", [](Engine& e, Id id) { edit(e, [id](Scene& s) { s.remove_mesh(id); }); })

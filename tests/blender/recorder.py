@@ -8,6 +8,7 @@ class Recorder:
     """Has the calls of `panoptes_native.Engine`; `calls` lists (name, arguments)."""
 
     device = 'recorder'
+    spoiled = False
 
     def __init__(self):
         self.calls = []

@@ -308,6 +308,19 @@ class TestForReal:
         bpy.ops.render.render()
         assert native.engine().counters()['programs'] == before
 
+    def test_another_engine_takes_the_place_of_one_whose_driver_failed(self, scene, tmp_path):
+        world(color=(0.2, 0.4, 0.6))
+        scene.camera.data.type = 'PERSP'
+        before = render_combined(scene, tmp_path)
+        failed = native.engine()
+        request = {'width': 16384, 'height': 16384, 'samples': (0, 1), 'view': np.eye(4), 'projection': np.eye(4)}
+        job = failed.render(request)
+        assert job.wait(60.0) and failed.spoiled
+        with pytest.raises(native.module().Error, match='could not allocate'):
+            job.finish()
+        assert (render_combined(scene, tmp_path) == before).all()
+        assert native.engine() is not failed and not native.engine().spoiled
+
     def test_time_budget(self, scene):
         ground()
         scene.panoptes.samples = 100000

@@ -303,6 +303,27 @@ TEST(EngineJobs, ClosingDuringARenderEndsItSoon) {
   engine.close();  // idempotent
 }
 
+TEST(EngineJobs, ADriverWithoutMemorySpoilsTheEngineAlone) {
+  engine::Engine engine;
+  set_scene(engine);
+  engine::RenderRequest huge = request(still_life().camera, {});
+  const auto before = engine.render(huge);
+  EXPECT_TRUE(before->wait(60));
+  EXPECT_FALSE(engine.spoiled());
+  huge.camera.width = huge.camera.height = engine.device().max_texture_size;
+  huge.passes.set();
+  const auto job = engine.render(huge);
+  ASSERT_TRUE(job->wait(60));
+  EXPECT_THROW(job->check(), Error);
+  EXPECT_TRUE(engine.spoiled());
+  engine.close();
+  engine::Engine another;
+  set_scene(another);
+  const auto after = another.render(request(still_life().camera, {}));
+  EXPECT_TRUE(after->wait(60));
+  EXPECT_EQ(after->read(Pass::kCombined), before->read(Pass::kCombined));
+}
+
 TEST(EngineJobs, CallsAfterCloseThrow) {
   engine::Engine engine;
   engine.close();
