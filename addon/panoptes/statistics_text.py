@@ -49,9 +49,14 @@ def _words(name):
 
 def _times(stats):
     """Return the line of what takes how long, a sample on the mean; '' where nothing was measured."""
-    effects = sorted((e for e in stats.get('effects', ()) if e['runs'] and e['ms']), key=lambda e: -e['ms'])
-    named = [(_words(e['name']), e['ms']) for e in effects[:_MOST_TIMED]]
-    rest = sum(p['ms'] or 0.0 for p in stats.get('passes', ())) - sum(ms for _, ms in named)
+    effects, passes = stats.get('effects', ()), stats.get('passes', ())
+    # Effects include the passes whose names begin with theirs; other passes serve several effects.
+    known = tuple(f'{e["name"]}_' for e in effects)
+    shared = [p for p in passes if not f'{p["name"]}_'.startswith(known)]
+    timed = [e for e in (*effects, *shared) if e.get('runs', True) and e['ms']]
+    timed.sort(key=lambda e: -e['ms'])
+    named = [(_words(e['name']), e['ms']) for e in timed[:_MOST_TIMED]]
+    rest = sum(p['ms'] or 0.0 for p in passes) - sum(ms for _, ms in named)
     samples = stats['samples']
     # Less is not to be seen.
     if rest / samples >= 0.05:

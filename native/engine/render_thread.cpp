@@ -314,7 +314,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     if (!film_.all_active() && film_.active_count() == 0) break;
     if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
       // It changes slowly, and is not worth a copy of the film each time.
-      if (done >= 2 * error_at) {
+      if (!mixes && done >= 2 * error_at) {
         live_error = film_.estimated_error();
         error_at = done;
       }

@@ -56,6 +56,10 @@ class TestTimes:
         assert lines(stats(effects, passes))[2] == (
             'A sample: b shadows 10.0 ms, d 5.0 ms, e 3.0 ms, c 2.0 ms, the rest 2.5 ms')
 
+    def test_what_serves_several_effects_is_named(self):
+        found = stats([effect('a', 4.0), effect('b', 2.0)], [('a_draw', 4.0), ('b', 2.0), ('structure', 40.0)])
+        assert lines(found)[2] == 'A sample: structure 10.0 ms, a 1.0 ms, b 0.5 ms'
+
     def test_no_rest(self):
         assert lines(stats([effect('a', 4.0)], [('a', 4.0)]))[2] == 'A sample: a 1.0 ms'
 
