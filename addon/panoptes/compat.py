@@ -210,6 +210,13 @@ def draw_pixels(pixels, left, bottom, width, height):
     gpu.state.blend_set('NONE')
 
 
+def view_text_color(preferences):
+    """Return the colour (RGB) of highlighted text in 3D Views."""
+    # Themes are rearranged from time to time; white is what most have.
+    space = getattr(preferences.themes[0].view_3d, 'space', None)
+    return tuple(getattr(space, 'text_hi', (1.0, 1.0, 1.0)))
+
+
 def draw_text(lines, left, bottom, size, spacing, color):
     """Draw lines of text with a shadow, the last one at (left, bottom) of the region.
 

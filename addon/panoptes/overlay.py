@@ -43,7 +43,7 @@ def _draw(context):
     # A letter is about half as wide as high.
     letters = int((context.region.width - left) / (0.5 * size))
     compat.draw_text(viewport.statistics(letters), left, bottom, size, _SPACING,
-                     context.preferences.themes[0].view_3d.space.text_hi)
+                     compat.view_text_color(context.preferences))
 
 
 def wants_text(space):

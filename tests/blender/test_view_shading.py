@@ -162,6 +162,12 @@ class TestOverlay:
         overlay._draw(context)
         assert len(drawn) == 1
 
+    def test_other_themes_have_white_text(self):
+        theme = types.SimpleNamespace(view_3d=types.SimpleNamespace())
+        assert overlay.compat.view_text_color(types.SimpleNamespace(themes=[theme])) == (1.0, 1.0, 1.0)
+        ours = bpy.context.preferences.themes[0].view_3d.space.text_hi
+        assert overlay.compat.view_text_color(bpy.context.preferences) == tuple(ours)
+
     def test_never_raises_and_tells_once(self, monkeypatch, capfd):
         def fail(context):
             raise ValueError('broken on purpose')
