@@ -2,6 +2,7 @@
 """Building scenes in tests, and synchronising them with a recorder."""
 
 import bpy
+import numpy as np
 
 from panoptes.sync import Mirror, SceneSync
 
@@ -69,6 +70,26 @@ def quad(name='Quad', materials=0):
     return mesh
 
 
+def grid(name, side, size=2.0):
+    """A square mesh of side * side quads with a UV map."""
+    steps = np.linspace(-0.5, 0.5, side + 1) * size
+    x, y = np.meshgrid(steps, steps)
+    corners = np.stack([x, y, np.zeros_like(x)], -1).reshape(-1, 3)
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).reshape(-1, 1)
+    places = first + [0, 1, side + 2, side + 1]
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(corners.tolist(), [], places.tolist())
+    uv = corners[places.ravel(), :2] / size + 0.5
+    mesh.uv_layers.new(name='UVMap').data.foreach_set('uv', uv.astype(np.float32).ravel())
+    mesh.update()
+    return mesh
+
+
+def principled(of_material):
+    """The Principled node of a material."""
+    return next(n for n in of_material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED')
+
+
 def cube():
     bpy.ops.mesh.primitive_cube_add()
     return bpy.context.object
@@ -81,6 +102,5 @@ def material_reading(name):
     tree = material.node_tree
     node = tree.nodes.new('ShaderNodeAttribute')
     node.attribute_name = name
-    principled = next(n for n in tree.nodes if n.type == 'BSDF_PRINCIPLED')
-    tree.links.new(node.outputs['Color'], principled.inputs['Base Color'])
+    tree.links.new(node.outputs['Color'], principled(material).inputs['Base Color'])
     return material

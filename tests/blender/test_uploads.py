@@ -6,10 +6,9 @@ off. Bounds are sizes, in bytes, of what native/gpu_scene keeps of each thing.
 """
 
 import bpy
-import numpy as np
 import pytest
 
-from building import Sync, add_object, quad
+from building import Sync, add_object, grid, principled, quad
 from panoptes import native, requests
 
 OBJECTS = 1000
@@ -86,23 +85,6 @@ def material(name, color):
     return made
 
 
-def principled(of_material):
-    return next(n for n in of_material.node_tree.nodes if n.type == 'BSDF_PRINCIPLED')
-
-
-def grid(name, side=SIDE):
-    """A mesh of side * side quads with a UV map."""
-    steps = np.linspace(-1.0, 1.0, side + 1)
-    x, y = np.meshgrid(steps, steps)
-    corners = np.stack([x, y, np.zeros_like(x)], -1).reshape(-1, 3)
-    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).reshape(-1, 1)
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(corners.tolist(), [], (first + [0, 1, side + 2, side + 1]).tolist())
-    mesh.uv_layers.new(name='UVMap')
-    mesh.update()
-    return mesh
-
-
 @pytest.fixture
 def uploads(scene, native_module):
     """A thousand objects without indirect light, which is gathered anew after most edits and sent then."""
@@ -121,7 +103,7 @@ def thousand_objects(scene):
     tile.materials.append(red)
     for i in range(OBJECTS):
         add_object(tile, f'Tile {i}', location=(i % 40 - 20, i // 40 - 12, 0))
-    ground = grid('Ground')
+    ground = grid('Ground', SIDE)
     ground.materials.append(green)
     add_object(ground, 'Ground', location=(0, 0, -1), scale=(20, 20, 1))
     light = bpy.data.lights.new('Lamp', 'SUN')

@@ -68,8 +68,12 @@ def screenshot(name):
         subprocess.run(['import', '-window', 'root', os.path.join(folder, name + '.png')], check=False)
 
 
-def run(steps):
-    """Do each (name, action, result): act, then wait until `result` is not None, and write it."""
+def run(steps, notice=0.6, poll=0.2):
+    """Do each (name, action, result): act, then wait until `result` is not None, and write it.
+
+    `notice` is how long Blender is left, in seconds, until the first question for a result: at least one round of its
+    main loop. `poll` is the time between two questions.
+    """
     out = sys.argv[sys.argv.index('--') + 1]
     shown = {}
     state = {'step': 0, 'acted': False, 'since': 0.0}
@@ -87,19 +91,19 @@ def run(steps):
                 state.update(acted=True, since=time.monotonic())
                 action()
                 # Blender has to notice the edit before its picture counts.
-                return 0.6
+                return notice
             found = result()
             # A redraw may have taken long; only a step that leads to nothing is too late.
             late = found is None and time.monotonic() - state['since'] > LIMIT
             if found is None and not late:
-                return 0.2
+                return poll
             shown[name] = found
             screenshot(name)
             state.update(step=state['step'] + 1, acted=False)
             if late or state['step'] == len(steps):
                 finish()
                 return None
-            return 0.1
+            return min(poll, 0.1)
         except Exception:  # nothing that happens in a timer ends Blender by itself
             traceback.print_exc()
             finish()

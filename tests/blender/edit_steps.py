@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside a Blender with a window: edits what a 3D View shows, and compares with pictures of a fresh engine.
+
+-- OUT.json edits           each edit in turn
+-- OUT.json walk N SEED     N of them by chance, undo and redo among them; compared every ten
+"""
+
+import os
+import random
+import sys
+import time
+
+import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+# First, since it tells where the add-on is.
+from window_steps import area, run  # noqa: E402
+
+import edit_scene  # noqa: E402
+import edits  # noqa: E402
+import fresh  # noqa: E402
+
+import panoptes  # noqa: E402
+from panoptes import native  # noqa: E402
+
+# Seconds in which Blender has noticed any edit: what differs from a fresh picture later is stale.
+NOTICED = 3.0
+# What Blender's undo does not know.
+_UNRECORDED = {edits.undo, edits.redo, edits.orbit, edits.zoom, edits.solid, edits.rendered, edits.play_armature,
+               edits.play_shape_keys, edits.split_view, edits.local_view, edits.edit_vertices}
+_ACTIONS = ('orbit', 'zoom', 'move_object', 'edit_vertices', 'leave_edit_mode', 'undo', 'redo', 'play_armature', 'stop',
+            'play_shape_keys', 'stop', 'drag_color', 'drag_roughness', 'undo', 'redo', 'relink', 'undo', 'redo', 'reassign',
+            'lamp_color', 'lamp_energy', 'lamp_type', 'undo', 'redo', 'move_lamp', 'world_color', 'world_nodes', 'undo',
+            'add_thing', 'undo', 'redo', 'duplicate', 'delete_thing', 'undo', 'hide', 'hide', 'disable', 'disable',
+            'exclude', 'undo', 'redo', 'exclude', 'new_material', 'add_modifier', 'change_modifier', 'undo', 'redo',
+            'remove_modifiers', 'split_view', 'move_object', 'join_views', 'local_view', 'move_object', 'local_view',
+            'solid', 'move_object', 'rendered', 'camera_border', 'move_object', 'no_border')
+# Steps of the walk: edits that leave the view able to take any other.
+_WALKED = ('orbit', 'zoom', 'move_object', 'edit_vertices leave_edit_mode', 'pose', 'shape', 'drag_color', 'drag_roughness',
+           'relink', 'reassign', 'lamp_color', 'lamp_energy', 'lamp_type', 'move_lamp', 'world_color', 'world_nodes',
+           'add_thing', 'duplicate', 'delete_thing', 'hide', 'disable', 'exclude', 'new_material', 'add_modifier',
+           'change_modifier', 'remove_modifiers', 'split_view', 'local_view', 'solid rendered', 'camera_border',
+           'no_border', 'undo', 'undo', 'undo', 'redo', 'redo')
+
+
+class Walk:
+    """What all steps of a run share."""
+
+    def __init__(self, seed):
+        self.random = random.Random(seed)
+        self.jobs = []
+        self.since = 0.0
+        self.before = {}
+        self.cost = None
+        fresh.note_jobs(self.jobs)
+
+    def start(self):
+        """A small 3D View alone in the window, few samples, and no light in which earlier pictures have a share."""
+        panoptes.register()
+        scene = bpy.context.scene
+        scene.render.engine = 'PANOPTES'
+        scene.render.resolution_x, scene.render.resolution_y = 64, 48
+        edit_scene.build()
+        settings = scene.panoptes
+        settings.method, settings.viewport_samples = 'realtime', 2
+        settings.realtime.shadow_resolution = 128
+        settings.radiance_cache.enabled = False
+        space = area('VIEW_3D').spaces[0]
+        space.overlay.show_overlays = space.show_gizmo = False
+        space.region_3d.view_perspective = 'PERSP'
+        space.region_3d.view_location, space.region_3d.view_distance = (0.0, 0.0, 0.5), 8.0
+        space.shading.type = 'RENDERED'
+        bpy.ops.ed.undo_push(message='start')
+        self._note()
+
+    def close_area(self):
+        """Close one of the areas beside the 3D View, of which Blender wants to redraw its window before the next."""
+        window = bpy.context.window_manager.windows[0]
+        other = next(a for a in window.screen.areas if a.type != 'VIEW_3D')
+        with bpy.context.temp_override(window=window, area=other):
+            bpy.ops.screen.area_close()
+
+    def alone(self):
+        """Tell whether there is one area less than before."""
+        return len(bpy.context.window_manager.windows[0].screen.areas)
+
+    def _note(self):
+        self.since, self.before, self.cost = time.monotonic(), native.engine().counters(), None
+        self.jobs.clear()
+
+    def edit(self, *names):
+        """Make edits, after which Blender's undo knows them."""
+        self._note()
+        # The last of these lines tells what a crash was about.
+        print('edit', *names, flush=True)
+        changes = [getattr(edits, name) for name in names]
+        for change in changes:
+            change(self.random)
+        if not _UNRECORDED & set(changes):
+            bpy.ops.ed.undo_push(message=' '.join(names))
+
+    def complete(self):
+        """Return [(space, request, viewport)] of all rendered 3D Views; None while one of them is not done."""
+        found = []
+        for space, region in fresh.rendered_spaces():
+            request = fresh.request_of(space, region)
+            found.append((space, request, fresh.shown(request)))
+        return None if any(view is None for _, _, view in found) else found
+
+    def compared(self):
+        """Return the views' differences from fresh pictures and what the edit has cost; None while they are not done."""
+        found = self.complete()
+        if found is None:
+            return None
+        if self.cost is None:
+            now = native.engine().counters()
+            self.cost = {name: now[name] - self.before[name] for name in ('uploaded_bytes', 'programs')}
+            self.cost['samples'] = sum(job.samples for job in self.jobs)
+            self.cost['seconds'] = time.monotonic() - self.since
+        views = [fresh.difference(view._pixels, request, space) for space, request, view in found]
+        if any(view['differing'] for view in views) and time.monotonic() - self.since < NOTICED:
+            self.cost = None
+            return None
+        return {**self.cost, 'views': views, 'resident': resident(), 'at': time.monotonic()}
+
+    def completed(self):
+        """Return the time as soon as the views are complete."""
+        return None if self.complete() is None else {'seconds': time.monotonic() - self.since, 'resident': resident()}
+
+    def played(self):
+        """Return the frame as soon as playback has shown a few."""
+        scene = bpy.context.scene
+        return scene.frame_current if scene.frame_current > scene.frame_start + 3 else None
+
+
+def resident():
+    """Return how many bytes of this process are in memory."""
+    with open('/proc/self/statm', encoding='ascii') as file:
+        return int(file.read().split()[1]) * os.sysconf('SC_PAGE_SIZE')
+
+
+def started(walk):
+    """Return the steps to a small 3D View alone in the window."""
+    return [*((f'close {n}', walk.close_area, walk.alone) for n in range(3)), ('start', walk.start, walk.compared)]
+
+
+def all_edits(walk):
+    """Return the steps of each edit in turn; names are numbered, since some edits are made twice."""
+    def step(number, name):
+        result = walk.played if name.startswith('play') else walk.compared
+        return f'{number:02} {name}', lambda: walk.edit(name), result
+    return [*started(walk), *(step(n, name) for n, name in enumerate(_ACTIONS))]
+
+
+def by_chance(walk, count):
+    """Return `count` steps by chance."""
+    def step(number):
+        def act():
+            chosen = walk.random.choice(_WALKED)
+            walk.edit(*chosen.split())
+        return str(number), act, walk.compared if number % 10 == 9 else walk.completed
+    return [*started(walk), *(step(number) for number in range(count))]
+
+
+def main():
+    """Do what the command line asks for."""
+    kind, *more = sys.argv[sys.argv.index('--') + 2:]
+    walk = Walk(int(more[1]) if kind == 'walk' else 7)
+    run(by_chance(walk, int(more[0])) if kind == 'walk' else all_edits(walk), notice=0.1, poll=0.05)
+
+
+main()

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pictures that 3D Views should show: of engines that have never seen the scene before."""
+
+import bpy
+import numpy as np
+
+from panoptes import native, refinement, requests, session
+from panoptes.sync import Mirror, SceneSync
+from panoptes.viewport import _key
+
+
+def note_jobs(noted):
+    """Append every refinement of a 3D View to `noted` when a job of it starts."""
+    start = refinement.Refinement.start
+
+    def started(self, engine):
+        noted.append(self)
+        start(self, engine)
+
+    refinement.Refinement.start = started
+
+
+def rendered_spaces():
+    """Return (space, region) of each 3D View in Rendered shading."""
+    screen = bpy.context.window_manager.windows[0].screen
+    return [(a.spaces[0], next(r for r in a.regions if r.type == 'WINDOW')) for a in screen.areas
+            if a.type == 'VIEW_3D' and a.spaces[0].shading.type == 'RENDERED']
+
+
+def request_of(space, region):
+    """Return what a 3D View should show now."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return requests.viewport(depsgraph, region, space.region_3d, space, 1, lambda sentence: None)[0]
+
+
+def shown(request):
+    """Return what is behind the 3D View that shows a request's view in full; None while none does."""
+    wanted = _key(request, None)[1]
+    for viewport in list(session.viewports):
+        complete = viewport._picture is not None and not viewport.is_rendering() and viewport._pixels is not None
+        if complete and viewport._key[1] == wanted:
+            return viewport
+    return None
+
+
+def picture(request, space):
+    """Return float32[H, W, 4] of a new engine, with a GL context of its own, that is sent everything."""
+    engine = native.module().Engine()
+    try:
+        SceneSync().sync(Mirror(engine), bpy.context.evaluated_depsgraph_get(), space, incremental=False)
+        job = engine.render(request)
+        while not job.wait(1.0):
+            pass
+        job.finish()
+        return job.read('Combined')
+    finally:
+        engine.close()
+
+
+def difference(shown_pixels, request, space):
+    """Return how many pixels of a view are not those of a fresh picture, and the largest difference."""
+    expected = picture(request, space)
+    if expected.shape != shown_pixels.shape:
+        return {'size': shown_pixels.shape[:2], 'differing': expected.shape[0] * expected.shape[1], 'largest': None}
+    apart = np.abs(shown_pixels - expected).max(axis=2)
+    return {'size': expected.shape[:2], 'differing': int((apart != 0.0).sum()), 'largest': float(apart.max()),
+            'mean': float(expected[..., :3].mean())}
