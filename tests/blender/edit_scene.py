@@ -2,7 +2,8 @@
 """A room with one of everything that artists edit, for windows in which edits are tried.
 
 Its floor and its image are large beside the rest: whoever sends them again without need is found out.
-Frames 1 to 20 bend the worm by its armature, frames 21 to 40 blow up the face by its shape key.
+Nothing touches the floor: where surfaces coincide, the one that is drawn first shows, and the order of drawing is not that
+of a fresh engine once things have come and gone. Frames 1 to 20 bend the worm by its armature, frames 21 to 40 blow up the face by its shape key.
 """
 
 import math
@@ -86,15 +87,15 @@ def _walls():
 
 
 def _things():
-    box = add_object(box_mesh('Box'), 'Box', location=(-1.5, 0.0, 0.5))
+    box = add_object(box_mesh('Box'), 'Box', location=(-1.5, 0.0, 0.55))
     box.data.materials.append(paint('Red', (0.8, 0.1, 0.1)))
-    ball = add_object(ball_mesh('Ball'), 'Ball', location=(0.0, 1.0, 0.6))
-    ball.data.materials.append(paint('Paint', (0.1, 0.3, 0.8), 0.3))
+    ball = add_object(ball_mesh('Ball'), 'Ball', location=(0.0, 1.0, 0.65))
+    ball.data.materials.append(paint('Paint', (0.1, 0.3, 0.8), 0.7))
     extras = bpy.data.collections.new('Extras')
     bpy.context.scene.collection.children.link(extras)
     for number in range(2):
         extra = bpy.data.objects.new(f'Extra {number}', box.data)
-        extra.location, extra.scale = (1.0 + number, -1.5, 0.25), (0.5, 0.5, 0.5)
+        extra.location, extra.scale = (1.0 + number, -1.5, 0.3), (0.5, 0.5, 0.5)
         extras.objects.link(extra)
 
 
@@ -103,7 +104,7 @@ def _worm():
     mesh = ball_mesh('Worm', 8, 0.3)
     for vertex in mesh.vertices:
         vertex.co.z = (vertex.co.z + 0.3) * 3.0
-    worm = add_object(mesh, 'Worm', location=(1.5, 1.0, 0.0))
+    worm = add_object(mesh, 'Worm', location=(1.5, 1.0, 0.05))
     mesh.materials.append(paint('Green', (0.1, 0.6, 0.2)))
     rig = add_object(bpy.data.armatures.new('Rig'), 'Rig', location=worm.location)
     bpy.context.view_layer.objects.active = rig
@@ -126,7 +127,7 @@ def _worm():
 
 
 def _face():
-    face = add_object(ball_mesh('Face', 8, 0.4), 'Face', location=(-0.3, -1.2, 0.4))
+    face = add_object(ball_mesh('Face', 8, 0.4), 'Face', location=(-0.3, -1.2, 0.45))
     face.data.materials.append(bpy.data.materials['Paint'])
     face.shape_key_add(name='Basis')
     blown = face.shape_key_add(name='Blown')

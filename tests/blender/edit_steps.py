@@ -20,6 +20,7 @@ from window_steps import area, run  # noqa: E402
 import edit_scene  # noqa: E402
 import edits  # noqa: E402
 import fresh  # noqa: E402
+from edit_list import ACTIONS, WALKED  # noqa: E402
 
 import panoptes  # noqa: E402
 from panoptes import native  # noqa: E402
@@ -29,19 +30,6 @@ NOTICED = 3.0
 # What Blender's undo does not know.
 _UNRECORDED = {edits.undo, edits.redo, edits.orbit, edits.zoom, edits.solid, edits.rendered, edits.play_armature,
                edits.play_shape_keys, edits.split_view, edits.local_view, edits.edit_vertices}
-_ACTIONS = ('orbit', 'zoom', 'move_object', 'edit_vertices', 'leave_edit_mode', 'undo', 'redo', 'play_armature', 'stop',
-            'play_shape_keys', 'stop', 'drag_color', 'drag_roughness', 'undo', 'redo', 'relink', 'undo', 'redo', 'reassign',
-            'lamp_color', 'lamp_energy', 'lamp_type', 'undo', 'redo', 'move_lamp', 'world_color', 'world_nodes', 'undo',
-            'add_thing', 'undo', 'redo', 'duplicate', 'delete_thing', 'undo', 'hide', 'hide', 'disable', 'disable',
-            'exclude', 'undo', 'redo', 'exclude', 'new_material', 'add_modifier', 'change_modifier', 'undo', 'redo',
-            'remove_modifiers', 'split_view', 'move_object', 'join_views', 'local_view', 'move_object', 'local_view',
-            'solid', 'move_object', 'rendered', 'camera_border', 'move_object', 'no_border')
-# Steps of the walk: edits that leave the view able to take any other.
-_WALKED = ('orbit', 'zoom', 'move_object', 'edit_vertices leave_edit_mode', 'pose', 'shape', 'drag_color', 'drag_roughness',
-           'relink', 'reassign', 'lamp_color', 'lamp_energy', 'lamp_type', 'move_lamp', 'world_color', 'world_nodes',
-           'add_thing', 'duplicate', 'delete_thing', 'hide', 'disable', 'exclude', 'new_material', 'add_modifier',
-           'change_modifier', 'remove_modifiers', 'split_view', 'local_view', 'solid rendered', 'camera_border',
-           'no_border', 'undo', 'undo', 'undo', 'redo', 'redo')
 
 
 class Walk:
@@ -62,6 +50,7 @@ class Walk:
         scene.render.engine = 'PANOPTES'
         scene.render.resolution_x, scene.render.resolution_y = 64, 48
         edit_scene.build()
+        scene.render.preview_pixel_size = str(fresh.PIXEL)
         settings = scene.panoptes
         settings.method, settings.viewport_samples = 'realtime', 2
         settings.realtime.shadow_resolution = 128
@@ -71,7 +60,7 @@ class Walk:
         space.region_3d.view_perspective = 'PERSP'
         space.region_3d.view_location, space.region_3d.view_distance = (0.0, 0.0, 0.5), 8.0
         space.shading.type = 'RENDERED'
-        bpy.ops.ed.undo_push(message='start')
+        self.remember('start')
         self._note()
 
     def close_area(self):
@@ -98,7 +87,13 @@ class Walk:
         for change in changes:
             change(self.random)
         if not _UNRECORDED & set(changes):
-            bpy.ops.ed.undo_push(message=' '.join(names))
+            self.remember(' '.join(names))
+
+    @staticmethod
+    def remember(message):
+        """Let Blender's undo know what was edited."""
+        with edits.in_view():
+            bpy.ops.ed.undo_push(message=message)
 
     def complete(self):
         """Return [(space, request, viewport)] of all rendered 3D Views; None while one of them is not done."""
@@ -118,8 +113,11 @@ class Walk:
             self.cost = {name: now[name] - self.before[name] for name in ('uploaded_bytes', 'programs')}
             self.cost['samples'] = sum(job.samples for job in self.jobs)
             self.cost['seconds'] = time.monotonic() - self.since
+        after = native.engine().counters()
         views = [fresh.difference(view._pixels, request, space) for space, request, view in found]
         if any(view['differing'] for view in views) and time.monotonic() - self.since < NOTICED:
+            # The edit goes on, and only the fresh engines' share is no cost of it.
+            self.before = {name: self.before[name] + native.engine().counters()[name] - after[name] for name in after}
             self.cost = None
             return None
         return {**self.cost, 'views': views, 'resident': resident(), 'at': time.monotonic()}
@@ -150,14 +148,14 @@ def all_edits(walk):
     def step(number, name):
         result = walk.played if name.startswith('play') else walk.compared
         return f'{number:02} {name}', lambda: walk.edit(name), result
-    return [*started(walk), *(step(n, name) for n, name in enumerate(_ACTIONS))]
+    return [*started(walk), *(step(n, name) for n, name in enumerate(ACTIONS))]
 
 
 def by_chance(walk, count):
     """Return `count` steps by chance."""
     def step(number):
         def act():
-            chosen = walk.random.choice(_WALKED)
+            chosen = walk.random.choice(WALKED)
             walk.edit(*chosen.split())
         return str(number), act, walk.compared if number % 10 == 9 else walk.completed
     return [*started(walk), *(step(number) for number in range(count))]

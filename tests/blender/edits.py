@@ -213,7 +213,8 @@ def drag_color(random):
 
 
 def drag_roughness(random):
-    principled(bpy.data.materials['Paint']).inputs['Roughness'].default_value = random.uniform(0.2, 0.9)
+    """Within what takes no traced reflections, for which rays would have to be prepared."""
+    principled(bpy.data.materials['Paint']).inputs['Roughness'].default_value = random.uniform(0.6, 0.9)
 
 
 def relink(random):
@@ -232,9 +233,10 @@ def relink(random):
 
 
 def reassign(random):
+    """The slot gets another material; scripts that write to the mesh's own list tell Blender of no change."""
     other = {'Red': 'Green', 'Green': 'Red'}
-    mesh = thing('Box').data
-    mesh.materials[0] = bpy.data.materials[other[mesh.materials[0].name]]
+    slot = thing('Box').material_slots[0]
+    slot.material = bpy.data.materials[other[slot.material.name]]
 
 
 def new_material(random):

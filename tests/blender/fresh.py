@@ -8,6 +8,9 @@ from panoptes import native, refinement, requests, session
 from panoptes.sync import Mirror, SceneSync
 from panoptes.viewport import _key
 
+# One pixel of a picture covers so many by so many of the region, so that pictures are soon done.
+PIXEL = 4
+
 
 def note_jobs(noted):
     """Append every refinement of a 3D View to `noted` when a job of it starts."""
@@ -30,7 +33,7 @@ def rendered_spaces():
 def request_of(space, region):
     """Return what a 3D View should show now."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return requests.viewport(depsgraph, region, space.region_3d, space, 1, lambda sentence: None)[0]
+    return requests.viewport(depsgraph, region, space.region_3d, space, PIXEL, lambda sentence: None)[0]
 
 
 def shown(request):

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The edits that a 3D View has to follow, by their names in edits.py, in the order in which they are made."""
+
+ACTIONS = ('orbit', 'zoom', 'move_object', 'edit_vertices', 'leave_edit_mode', 'undo', 'redo', 'play_armature', 'stop',
+           'play_shape_keys', 'stop', 'drag_color', 'drag_roughness', 'undo', 'redo', 'relink', 'undo', 'redo', 'reassign',
+           'lamp_color', 'lamp_energy', 'lamp_type', 'undo', 'redo', 'move_lamp', 'world_color', 'world_nodes', 'undo',
+           'add_thing', 'undo', 'redo', 'duplicate', 'delete_thing', 'undo', 'hide', 'hide', 'disable', 'disable',
+           'exclude', 'undo', 'redo', 'exclude', 'new_material', 'add_modifier', 'change_modifier', 'undo', 'redo',
+           'remove_modifiers', 'split_view', 'move_object', 'join_views', 'local_view', 'move_object', 'local_view',
+           'solid', 'move_object', 'rendered', 'camera_border', 'move_object', 'no_border')
+# Steps of the walk: edits that leave the view able to take any other.
+WALKED = ('orbit', 'zoom', 'move_object', 'edit_vertices leave_edit_mode', 'pose', 'shape', 'drag_color', 'drag_roughness',
+           'relink', 'reassign', 'lamp_color', 'lamp_energy', 'lamp_type', 'move_lamp', 'world_color', 'world_nodes',
+           'add_thing', 'duplicate', 'delete_thing', 'hide', 'disable', 'exclude', 'new_material', 'add_modifier',
+           'change_modifier', 'remove_modifiers', 'split_view', 'local_view', 'solid rendered', 'camera_border',
+           'no_border', 'undo', 'undo', 'undo', 'redo', 'redo')
