@@ -11,6 +11,7 @@ import sys
 import time
 
 import bpy
+import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -41,6 +42,7 @@ class Walk:
         self.since = 0.0
         self.before = {}
         self.cost = None
+        self.shown = []
         fresh.note_jobs(self.jobs)
 
     def start(self):
@@ -120,7 +122,9 @@ class Walk:
             self.before = {name: self.before[name] + native.engine().counters()[name] - after[name] for name in after}
             self.cost = None
             return None
-        return {**self.cost, 'views': views, 'resident': resident(), 'at': time.monotonic()}
+        shown, self.shown = self.shown, [view._pixels for _, _, view in found]
+        changed = len(shown) != len(self.shown) or not all(map(np.array_equal, shown, self.shown))
+        return {**self.cost, 'views': views, 'changed': changed, 'resident': resident(), 'at': time.monotonic()}
 
     def completed(self):
         """Return the time as soon as the views are complete."""

@@ -86,7 +86,7 @@ def local_view(random):
     """In and out again."""
     if view().local_view is None:
         for one in bpy.context.view_layer.objects:
-            one.select_set(one.name in ('Ball', 'Floor', 'Lamp'))
+            one.select_set(one.name in ('Ball', 'Box', 'Floor', 'Lamp'))
         bpy.context.view_layer.objects.active = thing('Ball')
     with in_view():
         bpy.ops.view3d.localview(frame_selected=False)
