@@ -3,7 +3,8 @@
 
 Its floor and its image are large beside the rest: whoever sends them again without need is found out.
 Nothing touches the floor: where surfaces coincide, the one that is drawn first shows, and the order of drawing is not that
-of a fresh engine once things have come and gone. Frames 1 to 20 bend the worm by its armature, frames 21 to 40 blow up the face by its shape key.
+of a fresh engine once things have come and gone. Frames 1 to 20 bend the worm by its armature, frames 21 to 40 blow up
+the face by its shape key.
 """
 
 import math

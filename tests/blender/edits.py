@@ -109,7 +109,9 @@ def move_object(random):
 
 
 def edit_vertices(random):
-    """A few are pulled out, and edit mode is still on."""
+    """A few are pulled out, and edit mode is still on; what is hidden cannot be edited."""
+    if not thing('Ball').visible_get():
+        return
     bpy.context.view_layer.objects.active = thing('Ball')
     with in_view():
         bpy.ops.object.mode_set(mode='EDIT')
@@ -122,6 +124,8 @@ def edit_vertices(random):
 
 
 def leave_edit_mode(random):
+    if bpy.context.mode == 'OBJECT':
+        return
     bpy.context.view_layer.objects.active = thing('Ball')
     with in_view():
         bpy.ops.object.mode_set(mode='OBJECT')
