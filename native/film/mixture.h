@@ -18,7 +18,7 @@ struct Mixture {
 // samples. All have width * height pixels, finite.
 //
 // What `smooth` is off by is estimated about each pixel: the mean square of the difference, less the part of it that is
-// noise. With a bias b and a noise of variance v, b^2 / (b^2 + v) is the weight of `noisy` that has the least mean
+// noise or may be. With a bias b and a noise of variance v, b^2 / (b^2 + v) is the weight of `noisy` that has the least mean
 // square error, b^2 v / (b^2 + v). Neither depends on a pixel's own noise alone, which would make bright outliers count
 // for less and darken the picture. Colours are as noisy as they are bright.
 Mixture mix_by_error(int width, int height, std::span<const float> smooth, std::span<const float> noisy,
