@@ -68,11 +68,11 @@ def screenshot(name):
         subprocess.run(['import', '-window', 'root', os.path.join(folder, name + '.png')], check=False)
 
 
-def run(steps, notice=0.6, poll=0.2):
+def run(steps, notice=0.6, poll=0.2, close=True):
     """Do each (name, action, result): act, then wait until `result` is not None, and write it.
 
     `notice` is how long Blender is left, in seconds, until the first question for a result: at least one round of its
-    main loop. `poll` is the time between two questions.
+    main loop. `poll` is the time between two questions. Without `close` Blender ends while the engine is at work.
     """
     out = sys.argv[sys.argv.index('--') + 1]
     shown = {}
@@ -81,7 +81,8 @@ def run(steps, notice=0.6, poll=0.2):
     def finish():
         with open(out, 'w', encoding='utf-8') as file:
             json.dump(shown, file)
-        native.close()
+        if close:
+            native.close()
         bpy.ops.wm.quit_blender()
 
     def tick():
@@ -110,4 +111,5 @@ def run(steps, notice=0.6, poll=0.2):
             os._exit(3)
 
     bpy.context.preferences.view.show_splash = False
-    bpy.app.timers.register(tick, first_interval=1.0)
+    # Files may be opened on the way.
+    bpy.app.timers.register(tick, first_interval=1.0, persistent=True)
