@@ -68,12 +68,11 @@ class PANOPTES_PT_view_pass(bpy.types.Panel):
     bl_space_type = 'VIEW_3D'
     bl_region_type = 'HEADER'
     bl_parent_id = 'VIEW3D_PT_shading'
-    COMPAT_ENGINES = {ENGINE}
 
     @classmethod
     def poll(cls, context):
         """Show the panel in 3D Views that Panoptes renders."""
-        return context.engine in cls.COMPAT_ENGINES and context.space_data.shading.type == 'RENDERED'
+        return context.engine == ENGINE and context.space_data.shading.type == 'RENDERED'
 
     def draw(self, context):
         """Draw the panel."""

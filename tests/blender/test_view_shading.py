@@ -9,7 +9,7 @@ import pytest
 from mathutils import Matrix
 
 import panoptes
-from panoptes import changeover, overlay, passes, requests, session, view_shading
+from panoptes import changeover, overlay, passes, requests, session, user_interface, view_shading
 from panoptes.refinement import Refinement
 
 
@@ -57,6 +57,9 @@ class TestMenu:
         assert list(found) == [entry.identifier for entry in view_shading.VIEW_PASSES]
 
     def test_panel_is_for_rendered_views_of_ours(self):
+        # Also when the add-on was switched off and on again, which takes the engine out of Blender's panels.
+        user_interface.unregister()
+        user_interface.register()
         poll = view_shading.PANOPTES_PT_view_pass.poll
         view = space()
         assert poll(types.SimpleNamespace(engine='PANOPTES', space_data=view))
