@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -247,3 +248,14 @@ def test_a_whole_picture_is_measured_beside_cycles_first_sample():
     for row in found["rows"].values():
         assert row["s"] > 0.0 and row["cpu s"] > 0.0 and 0.0 < row["srgb rmse"] < 0.5
     assert found["rows"]["PANOPTES 1"]["passes"]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not (shutil.which("xvfb-run") and shutil.which("xauth")), reason="needs xvfb-run and xauth")
+def test_edits_in_a_3d_view_are_timed_beside_cycles(tmp_path):
+    [found] = bench("viewport/run.py", "--scene", ROOT / "blend_scenes" / "two_spots.blend", "--window", "480x360", "--samples", "4", "--repeat", "1",
+                    "--edits", "2", "--pictures", tmp_path)["viewport"]
+    assert set(found["rows"]) == {"CYCLES", "PANOPTES"}
+    for engine, row in found["rows"].items():
+        assert 0.0 < row["first s"] <= row["full s"] and 0.0 < row["rmse"] < 0.5
+        assert shown(tmp_path / f"viewport_two_spots_{engine.lower()}.png").shape[:2] == tuple(found["size"][::-1])
