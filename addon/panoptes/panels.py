@@ -53,6 +53,22 @@ class PANOPTES_PT_sampling_limits(EnginePanel, bpy.types.Panel):
         column.prop(settings, 'force_all_effects')
 
 
+class PANOPTES_PT_denoising(EnginePanel, bpy.types.Panel):
+    """Where the noise of paths is taken out, and by what."""
+
+    bl_label = 'Denoise'
+    bl_parent_id = 'PANOPTES_PT_sampling'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        """Draw the panel."""
+        settings = context.scene.panoptes.denoise
+        column = self._column()
+        column.prop(settings, 'viewport')
+        column.prop(settings, 'final')
+        column.prop(settings, 'denoiser')
+
+
 class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
     """Pictures of rays, ambient occlusion and indirect light at work."""
 
@@ -246,7 +262,8 @@ class PANOPTES_PT_passes(EnginePanel, bpy.types.Panel):
                 column.prop(*entry.owner(context.view_layer))
 
 
-CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits, PANOPTES_PT_debug,
+CLASSES = (PANOPTES_PT_take_over, PANOPTES_PT_sampling, PANOPTES_PT_sampling_limits,
+           PANOPTES_PT_denoising, PANOPTES_PT_debug,
            PANOPTES_PT_light_paths, PANOPTES_PT_light_path_kinds, PANOPTES_PT_clamping, PANOPTES_PT_rays,
            PANOPTES_PT_shadows, *occlusion_panels.CLASSES, *indirect_panels.CLASSES, PANOPTES_PT_film,
            PANOPTES_PT_warnings, PANOPTES_PT_statistics, PANOPTES_PT_passes)

@@ -51,6 +51,8 @@ PASSES = (
     Pass('AO', 3, 'RGB', 'COLOR', 'use_pass_ambient_occlusion'),
     # The name that it has in Cycles, which makes room for it just so.
     Pass('Debug Sample Count', 1, 'X', 'VALUE', 'panoptes.use_pass_sample_count', paths=True, ours=True),
+    # That of Cycles, too.
+    Pass('Noisy Image', 4, 'RGBA', 'COLOR', 'panoptes.use_pass_noisy_image', paths=True, ours=True),
 )
 BY_NAME = {entry.name: entry for entry in PASSES}
 
@@ -66,7 +68,8 @@ def enabled(view_layer):
 
 
 def enable_all(view_layer, method):
-    """Switch on every pass that a method fills."""
+    """Switch on every pass that a method fills, and that is not the copy of another."""
+    denoises = view_layer.id_data.panoptes.denoise.final
     for entry in filled_by(method):
-        if entry.switch:
+        if entry.switch and (denoises or entry.name != 'Noisy Image'):
             setattr(*entry.owner(view_layer), True)

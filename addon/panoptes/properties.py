@@ -5,7 +5,7 @@ import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
                        StringProperty)
 
-from . import occlusion_properties, radiance_cache_properties, specular_rays
+from . import denoising, occlusion_properties, radiance_cache_properties, specular_rays
 
 
 class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
@@ -196,6 +196,7 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
     ambient_occlusion: PointerProperty(type=occlusion_properties.PanoptesOcclusionSettings)
     radiance_cache: PointerProperty(type=radiance_cache_properties.PanoptesRadianceCacheSettings)
     specular_rays: PointerProperty(type=specular_rays.PanoptesSpecularRaysSettings)
+    denoise: PointerProperty(type=denoising.PanoptesDenoiseSettings)
     last_stats: StringProperty(
         name='Last Statistics', description='Statistics of the last final render, as JSON',
         options={'HIDDEN', 'SKIP_SAVE'})
@@ -206,11 +207,13 @@ class PanoptesViewLayerSettings(bpy.types.PropertyGroup):
 
     use_pass_sample_count: BoolProperty(
         name='Sample Count', description='Deliver how many samples each pixel has got', default=False)
+    use_pass_noisy_image: BoolProperty(
+        name='Noisy Image', description='Deliver Combined as it was before it was denoised', default=False)
 
 
 _CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, occlusion_properties.PanoptesOcclusionSettings,
             radiance_cache_properties.PanoptesRadianceCacheSettings, specular_rays.PanoptesSpecularRaysSettings,
-            PanoptesSceneSettings, PanoptesViewLayerSettings, radiance_cache_properties.PanoptesObjectSettings)
+            denoising.PanoptesDenoiseSettings, PanoptesSceneSettings, PanoptesViewLayerSettings, radiance_cache_properties.PanoptesObjectSettings)
 
 
 def register():

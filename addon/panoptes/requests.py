@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from . import cameras, debug_pictures, lens, occlusion, radiance_cache, specular_rays, view_shading
+from . import (cameras, debug_pictures, denoising, lens, occlusion, radiance_cache, specular_rays,
+               view_shading)
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
 _PREVIEW_SAMPLES = 16
@@ -57,8 +58,8 @@ def _realtime_settings(depsgraph, warn):
     }
 
 
-def _settings(depsgraph, used, warn):
-    """Return the settings that count for a method ('realtime' or 'primitive')."""
+def _settings(depsgraph, used, viewport, warn):
+    """Return the settings that count for a method ('realtime' or 'primitive') in a 3D View or a final render."""
     scene, settings = depsgraph.scene, depsgraph.scene.panoptes
     found = {
         'shadow_resolution': settings.realtime.shadow_resolution,
@@ -68,6 +69,7 @@ def _settings(depsgraph, used, warn):
     }
     if used == 'primitive':
         found.update(_path_settings(scene))
+        found.update(denoising.settings(scene, viewport))
     else:
         found.update(_realtime_settings(depsgraph, warn))
     # 0 switches a limit off.
@@ -110,7 +112,7 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None,
     used = method(scene.panoptes, viewport) if by_paths else 'realtime'
     if scene.panoptes.method == 'fragment':
         warn('Fragment tracing does not work yet; Real-time is used instead.')
-    settings = _settings(depsgraph, used, warn)
+    settings = _settings(depsgraph, used, viewport, warn)
     if 'debug_picture' in settings:
         # It looks through the pixels' centres: another sample would be the same.
         samples = (0, 1)
@@ -181,6 +183,7 @@ def preview(depsgraph):
     view, projection = cameras.matrices(depsgraph, _active_camera(depsgraph), width, height)
     request = build(depsgraph, (width, height), (0, _PREVIEW_SAMPLES), view, projection,
                     ['Combined'], lambda sentence: None)
+    request['settings'].pop('denoise', None)
     request['settings'].update(time_budget=1.0, shadow_resolution=256, occlusion={'strength': 0.0},
                                cache={'enabled': False}, specular_rays={'mode': 'off'})
     return request
@@ -206,6 +209,8 @@ def final(depsgraph, passes, warn, part=False):
     samples = (settings.first_sample, settings.first_sample + settings.samples)
     request = build(depsgraph, (region[2] - region[0], region[3] - region[1]), samples, view,
                     _cropped(projection, region, width, height), passes, warn, camera)
+    if part and request['settings'].pop('denoise', None):
+        warn(denoising.MERGED)
     # Samples of a part must look as they do in the whole, of which nothing is known.
     few = samples[0] == 0 and samples[1] < _LAMP_POINTS and not part
     if settings.realtime.penumbrae == 'AUTO' and few:

@@ -39,10 +39,12 @@ def take_over(scene):
     ours.primitive.filter_glossy = cycles.blur_glossy
     ours.exposure = cycles.film_exposure
     scene.render.filter_size = cycles.filter_width
+    # Cycles denoises no 3D View by default, whose pictures have not begun smooth: ours stay as they are.
+    ours.denoise.final = cycles.use_denoising
     for layer in scene.view_layers:
         layer.panoptes.use_pass_sample_count = layer.cycles.pass_debug_sample_count
     taken = ['samples', 'viewport samples', 'noise threshold', 'time limit', 'seed', 'bounces', 'clamping',
-             'filter glossy', 'exposure', 'pixel filter width']
+             'filter glossy', 'denoising', 'exposure', 'pixel filter width']
     # Transparent film is one switch of Blender's for both engines.
     return taken, list(_without_counterpart(scene, cycles))
 
@@ -53,8 +55,6 @@ def _without_counterpart(scene, cycles):
         yield f'{cycles.pixel_filter_type.title()} filter (Blackman-Harris is used)'
     if not (cycles.caustics_reflective and cycles.caustics_refractive):
         yield 'no caustics'
-    if cycles.use_denoising:
-        yield 'denoising'
     if cycles.use_fast_gi:
         yield 'fast GI'
     if cycles.use_animated_seed:
@@ -66,7 +66,7 @@ def _without_counterpart(scene, cycles):
 
 
 class PANOPTES_OT_take_over_cycles(bpy.types.Operator):
-    """Copy samples, limits, bounces, clamping, exposure and pixel filter from this scene's settings for Cycles"""
+    """Copy samples, limits, bounces, clamping, denoising, exposure and pixel filter from this scene's settings for Cycles"""
 
     bl_idname = 'panoptes.take_over_cycles'
     bl_label = "Take over Cycles' Settings"

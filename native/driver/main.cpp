@@ -27,6 +27,7 @@ constexpr const char* kUsage =
     "                       [--method realtime|primitive] [--bounces N] [--shadow-maps]\n"
     "                       [--raster-primary] [--pass NAME] [--occlusion KEY=VALUE]...\n"
     "                       [--cache KEY=VALUE]... [--specular-rays auto|off|on]\n"
+    "                       [--denoise off|auto|edge_avoiding|oidn]\n"
     "                       [--structure auto|orthographic|cube|lists|bvh|view] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
@@ -40,6 +41,7 @@ struct Arguments {
   panoptes::film::Pass pass = panoptes::film::Pass::kCombined;
   std::vector<std::string> occlusion, cache;
   std::optional<panoptes::specular_rays::Mode> specular_rays;
+  std::optional<panoptes::denoise::Denoiser> denoiser;
   panoptes::engine::StructureSettings structure;
 };
 
@@ -78,6 +80,8 @@ Arguments parse(const std::vector<std::string>& words) {
     else if (word == "--specular-rays")
       a.specular_rays = panoptes::driver::named<panoptes::specular_rays::Mode>(
           panoptes::specular_rays::kModeNames, value());
+    else if (word == "--denoise")
+      a.denoiser = panoptes::driver::named<panoptes::denoise::Denoiser>(panoptes::denoise::kDenoiserNames, value());
     else if (word == "--bounces") a.bounces = whole(word, value(), 0);
     else if (word == "--method") {
       const std::string& name = value();
@@ -147,6 +151,7 @@ void run(const Arguments& arguments) {
   request.specular_rays.mode = arguments.specular_rays.value_or(request.specular_rays.mode);
   // One distance for both methods, as Blender's users have it.
   if (!arguments.occlusion.empty()) request.paths.ao_distance = request.occlusion.distance;
+  request.denoise.denoiser = arguments.denoiser.value_or(request.denoise.denoiser);
   request.method = arguments.method.value_or(request.method);
   request.paths.shadow_maps |= arguments.shadow_maps;
   request.paths.raster_primary |= arguments.raster_primary;

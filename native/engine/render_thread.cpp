@@ -26,6 +26,8 @@ double ms_since(Clock::time_point start) {
 
 // A live picture is copied out at most this often; more would cost more than it shows.
 constexpr double kLiveIntervalMs = 100;
+// And rendering gets at least so many times what showing takes, which is much where the picture is denoised.
+constexpr double kLiveShare = 3;
 // The estimated error needs a copy of the film: look at it every so many samples.
 constexpr uint32_t kErrorInterval = 4;
 
@@ -107,7 +109,7 @@ plan::Effects RenderThread::plan_of(const RenderRequest& request, const scene::S
   return plan::make_plan(scene.facts(), {samples, request.soft_shadows, request.filter_penumbrae,
                                          request.force_all_effects, request.passes,
                                          request.shown_pass, request.debug_picture, traces_paths(request),
-                                         {request.paths, request.camera.lens.radius > 0},
+                                         {request.paths, request.camera.lens.radius > 0}, request.denoise,
                                          request.occlusion, request.cache, request.specular_rays});
 }
 
@@ -131,22 +133,45 @@ void RenderThread::publish_live(Job& job) {
   if (!job.over_.smooth.empty()) mix(job);
 }
 
+film::PassSet RenderThread::filmed(const RenderRequest& request) const {
+  film::PassSet passes = request.passes;
+  if (request.force_all_effects) passes.set();
+  if (denoises_) passes |= denoise::features(request.camera.lens.radius > 0);
+  return passes;
+}
+
+film::Mixture RenderThread::denoised(const Job& job, const film::Mixture& paths) {
+  const RenderRequest& request = job.request();
+  return denoise_.run(request.denoise,
+                      denoise::gather(film_, paths.pixels, paths.variance, request.exposure,
+                                      request.camera.lens.radius > 0),
+                      programs_, timer_, job.cancelled_);
+}
+
 void RenderThread::mix(Job& job) {
   const RenderRequest& request = job.request();
-  std::vector<float> variance = film_.variance(request.exposure);
-  if (variance.empty()) return;
-  std::vector<float> paths = job.read(film::Pass::kCombined);
+  film::Mixture paths{job.read(film::Pass::kCombined), 0, film_.variance(request.exposure)};
+  if (paths.variance.empty()) return;
   const TakeOver& over = job.over_;
   if (over.before_samples > 0) {
     // Samples of the earlier job are as noisy.
     const float share = float(film_.samples()) / float(film_.samples() + over.before_samples);
-    for (size_t i = 0; i < paths.size(); ++i) paths[i] = std::lerp(over.before[i], paths[i], share);
-    for (float& v : variance) v *= share;
+    for (size_t i = 0; i < paths.pixels.size(); ++i) paths.pixels[i] = std::lerp(over.before[i], paths.pixels[i], share);
+    for (float& v : paths.variance) v *= share;
   }
-  film::Mixture mixture =
-      film::mix_by_error(request.camera.width, request.camera.height, over.smooth, paths, variance);
+  if (denoises_) paths = denoised(job, paths);
+  film::Mixture mixture = film::mix_by_error(request.camera.width, request.camera.height, over.smooth, paths.pixels,
+                                             paths.variance);
   mixture_error_ = mixture.error;
   job.show(std::move(mixture.pixels));
+}
+
+void RenderThread::publish_denoised(Job& job) {
+  const film::Mixture paths{job.read(film::Pass::kCombined), 0, film_.variance(job.request().exposure)};
+  if (paths.variance.empty()) return;
+  film::Mixture found = denoised(job, paths);
+  mixture_error_ = found.error;
+  job.publish(film::Pass::kCombined, std::move(found.pixels), film_.samples());
 }
 
 void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effects& plan,
@@ -179,12 +204,10 @@ void RenderThread::begin_realtime(const RenderRequest& request, const plan::Effe
 void RenderThread::begin_paths(const RenderRequest& request, const plan::Effects& plan,
                                scene::Scene& scene) {
   ray_picture_.release();
-  film::PassSet passes = request.passes;
-  if (request.force_all_effects) passes.set();
   path_tracer_.begin(request.camera, plan,
                      {plan::shortened(request.paths, request.shown_pass), request.seed, request.filter_width,
                       request.transparent_film, request.shadow_resolution},
-                     scene, gpu_scene_, traced_.triangles(), film::with_divisors(passes));
+                     scene, gpu_scene_, traced_.triangles(), film::with_divisors(filmed(request)));
 }
 
 void RenderThread::render_sample(const Job& job, uint32_t index) {
@@ -237,9 +260,9 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
     scene::Scene& scene = *held;
     gpu_scene_.update(scene);
     plan = plan_of(request, scene);
-    film::PassSet passes = request.passes;
-    if (request.force_all_effects) passes.set();
-    film_.start(request.camera.width, request.camera.height, passes,
+    denoises_ = !debug && plan::runs(plan, "denoiser");
+    if (!denoises_) denoise_.release();
+    film_.start(request.camera.width, request.camera.height, filmed(request),
                 {.moments = estimates,
                  .pieces = request.pieces,
                  // Real-time renders all pixels, and stops when the whole picture is good enough.
@@ -271,6 +294,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
 
   const Clock::time_point trace_start = Clock::now();
   Clock::time_point last_live = start;
+  double live_ms = 0;  // that showing the picture took
   uint32_t done = 0, error_at = 1;
   std::optional<double> live_error;
   const auto so_far = [&](std::optional<double> error) {
@@ -312,7 +336,7 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
       job.end_first_sample();
     }
     if (!film_.all_active() && film_.active_count() == 0) break;
-    if (request.live && (done == 1 || ms_since(last_live) > kLiveIntervalMs)) {
+    if (request.live && (done == 1 || ms_since(last_live) > std::max(kLiveIntervalMs, kLiveShare * live_ms))) {
       // It changes slowly, and is not worth a copy of the film each time.
       if (!mixes && done >= 2 * error_at) {
         live_error = film_.estimated_error();
@@ -320,8 +344,10 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
       }
       // Before the picture: who sees that finds its statistics.
       job.tell(so_far(mixes ? mixture_error_ : live_error));
+      const Clock::time_point shows = Clock::now();
       publish_live(job);
       last_live = Clock::now();
+      live_ms = ms_since(shows);
     }
     // Stop before a sample that would overrun the budget.
     const double spent = ms_since(start), each = ms_since(trace_start) / done;
@@ -336,9 +362,16 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
 
   RenderStats stats = so_far(std::nullopt);
   publish(job, request.passes);
-  if (mixes) mix(job);
+  if (mixes)
+    mix(job);
+  else if (denoises_)
+    publish_denoised(job);
+  if (denoises_) {
+    stats = so_far(std::nullopt);  // with the time that it took
+    if (!denoise_.warning().empty()) stats.warnings.push_back(denoise_.warning());
+  }
   stats.total_ms = ms_since(start);
-  stats.estimated_error = mixes ? mixture_error_ : film_.estimated_error();
+  stats.estimated_error = mixes || denoises_ ? mixture_error_ : film_.estimated_error();
   if (!debug && !paths) {
     stats.cache = realtime_.cache_occupied();
     if (std::string warning = realtime_.cache_warning(); !warning.empty())

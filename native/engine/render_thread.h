@@ -1,6 +1,7 @@
 // What lives on the render thread: the context and all that was made in it.
 #pragma once
 
+#include "denoise/denoiser.h"
 #include "engine/engine.h"
 #include "engine/traced_scene.h"
 #include "film/film.h"
@@ -43,8 +44,14 @@ class RenderThread {
   void publish(Job& job, const film::PassSet& passes);
   // Combined, and what is shown of it.
   void publish_live(Job& job);
-  // Shows what lies between the picture that the request has and that of paths so far.
+  // The passes that the film sums: those that the request asks for, and what the denoiser needs.
+  film::PassSet filmed(const RenderRequest& request) const;
+  // The denoised picture of `paths`, with the noise that it has.
+  film::Mixture denoised(const Job& job, const film::Mixture& paths);
+  // Shows what lies between the picture that the request has and that of paths so far, which is denoised if wanted.
   void mix(Job& job);
+  // In place of Combined.
+  void publish_denoised(Job& job);
 
   // Declared first, destroyed last: everything below holds GL objects.
   gl::Context context_;
@@ -57,6 +64,8 @@ class RenderThread {
   TracedScene traced_;
   ray_picture::RayPicture ray_picture_;
   path_tracer::PathTracer path_tracer_;
+  denoise::Denoise denoise_;
+  bool denoises_ = false;  // in the frame under way
   std::set<std::vector<bool>> compiled_;  // the effects of frames that have been rendered
 };
 

@@ -70,6 +70,10 @@ void RenderRequest::check() const {
   if (!ray_picture::known(debug_picture))
     fail("there is no debug picture number {}: choose one of {}", int(debug_picture),
          fmt::join(ray_picture::kKindNames, ", "));
+  denoise.check();
+  if (pieces && denoise.denoiser != denoise::Denoiser::kOff)
+    fail("pictures that are to be merged cannot be denoised, since the rest of their samples is not known: switch the "
+         "denoiser off");
   structure.check();
   paths.check();
   occlusion.check();

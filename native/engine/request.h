@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ambient_occlusion/settings.h"
+#include "denoise/settings.h"
 #include "engine/structure.h"
 #include "film/passes.h"
 #include "gpu_scene/view.h"
@@ -50,6 +51,8 @@ struct RenderRequest {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;
   StructureSettings structure;  // for rays
   path_tracer::Settings paths;
+  // Of Combined by paths: at the end, and in a 3D View whenever it is shown.
+  denoise::Settings denoise;
   ambient_occlusion::Settings occlusion;  // these three: of Real-time
   radiance_cache::Settings cache;
   specular_rays::Settings specular_rays;

@@ -152,6 +152,7 @@ std::vector<float> Film::read(Pass pass, float exposure) const {
   if (!passes_[size_t(pass)])
     fail("pass '{}' was not rendered: enable it in the view layer and render again", p.name);
   if (p.kind == PassKind::kFirst) return layer(layers_[size_t(pass)], p.channels);
+  if (p.kind == PassKind::kNoisy) return read(Pass::kCombined, exposure);
   if (p.kind == PassKind::kSamples)
     return sample_shares(counts(), size_t(width_) * size_t(height_));
   std::vector<float> divisor;

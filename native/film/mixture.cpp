@@ -57,6 +57,7 @@ std::vector<Local> sums_about(int width, int height, std::vector<Local> values) 
 // Of a window's sums: squares of the bias of the smooth picture, and of the noise of the other.
 struct Errors {
   double bias = 0, noise = 0;
+  double colour = 1;  // the mean square of colours by that of their brightness
 };
 
 Errors errors_of(const Local& sums, int pixels) {
@@ -64,7 +65,8 @@ Errors errors_of(const Local& sums, int pixels) {
   const double squares = (sums.red * sums.red + sums.green * sums.green + sums.blue * sums.blue) / 3;
   Errors e;
   // Running sums may end a little below 0.
-  e.noise = std::max(sums.variance, 0.0) / pixels * (bright > 0 ? squares / (bright * bright) : 1.0);
+  if (bright > 0) e.colour = squares / (bright * bright);
+  e.noise = std::max(sums.variance, 0.0) / pixels * e.colour;
   e.bias = std::max(sums.difference / pixels - e.noise, 0.0);
   return e;
 }
@@ -74,18 +76,22 @@ int window(int i, int count) { return std::min(i + kRadius, count - 1) - std::ma
 }  // namespace
 
 Mixture mix_by_error(int width, int height, std::span<const float> smooth, std::span<const float> noisy,
-                     std::span<const float> variance) {
+                     std::span<const float> variance, std::span<const float> shared) {
   const size_t count = size_t(width) * size_t(height);
   std::vector<Local> local(count);
   for (size_t i = 0; i < count; ++i) {
     const float *s = &smooth[4 * i], *n = &noisy[4 * i];
     double squares = 0;
     for (int c = 0; c < 3; ++c) squares += (double(n[c]) - s[c]) * (double(n[c]) - s[c]);
-    local[i] = {squares / 3, variance[i], n[0], n[1], n[2]};
+    // As if each pixel had kept a share of its own noise. Where it comes from others' instead, the noise is
+    // taken for too little, by less than the doubt.
+    double excess = variance[i];
+    if (!shared.empty()) excess = std::pow(std::sqrt(excess) - std::sqrt(double(shared[i])), 2);
+    local[i] = {squares / 3, excess, n[0], n[1], n[2]};
   }
   local = sums_about(width, height, std::move(local));
 
-  Mixture mixture{std::vector<float>(4 * count)};
+  Mixture mixture{std::vector<float>(4 * count), 0, std::vector<float>(count)};
   double squares = 0, bright = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -93,7 +99,10 @@ Mixture mix_by_error(int width, int height, std::span<const float> smooth, std::
       const Errors e = errors_of(local[i], window(x, width) * window(y, height));
       const double bias = std::max(e.bias - kDoubt * e.noise, 0.0), both = bias + e.noise;
       const double weight = both > 0 ? bias / both : 1.0;
-      squares += (1 - weight) * (1 - weight) * e.bias + weight * weight * e.noise;
+      double square = (1 - weight) * (1 - weight) * e.bias + weight * weight * e.noise;
+      if (!shared.empty()) square += e.colour * shared[i];
+      squares += square;
+      mixture.variance[i] = float(square / e.colour);
       float* pixel = &mixture.pixels[4 * i];
       for (int c = 0; c < 4; ++c) pixel[c] = float(smooth[4 * i + c] + weight * (double(noisy[4 * i + c]) - smooth[4 * i + c]));
       bright += brightness(pixel[0], pixel[1], pixel[2]);

@@ -10,7 +10,7 @@ namespace panoptes::film {
 enum class Pass {
   kCombined, kDepth, kPosition, kNormal,
   kDiffCol, kDiffDir, kDiffInd, kGlossCol, kGlossDir, kGlossInd, kTransCol, kTransDir, kTransInd,
-  kEmit, kEnv, kAo, kSampleCount, kCount
+  kEmit, kEnv, kAo, kSampleCount, kNoisyImage, kCount
 };
 constexpr int kPassCount = int(Pass::kCount);
 
@@ -18,6 +18,7 @@ enum class PassKind {
   kSum,      // of all samples, averaged
   kFirst,    // of the first sample alone: neither filtered nor averaged
   kSamples,  // tells of the samples: the film makes it itself
+  kNoisy,    // Combined before it is denoised
 };
 
 struct PassInfo {
@@ -47,6 +48,7 @@ constexpr std::array<PassInfo, kPassCount> kPasses{{
     {"Env", 3, "FILM_ENV", Pass::kEnv, true},
     {"AO", 3, "FILM_AO", Pass::kAo, false},
     {"Debug Sample Count", 1, "", Pass::kSampleCount, false, PassKind::kSamples},
+    {"Noisy Image", 4, "", Pass::kNoisyImage, true, PassKind::kNoisy},
 }};
 
 using PassSet = std::bitset<kPassCount>;

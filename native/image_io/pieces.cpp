@@ -180,6 +180,7 @@ void take_up(OIIO::ImageInput& input, const std::string& path, film::Pieces& pie
 std::vector<float> picture_of(const film::Pieces& pieces, Pass pass) {
   const film::Layout layout = pieces.layout();
   const film::SampleCounts counts{pieces.sums.last() - pieces.sums.first(), {}};
+  if (film::info(pass).kind == film::PassKind::kNoisy) return picture_of(pieces, Pass::kCombined);
   if (film::info(pass).kind == film::PassKind::kSamples)
     return film::sample_shares(counts, size_t(pieces.width) * size_t(pieces.height));
   if (const auto first = pieces.firsts.find(pass); first != pieces.firsts.end())

@@ -1,6 +1,7 @@
 #include "plan/plan.h"
 
 #include "ambient_occlusion/decide.h"
+#include "denoise/decide.h"
 #include "film/decide.h"
 #include "radiance_cache/decide.h"
 #include "rasterize/decide.h"
@@ -35,6 +36,7 @@ Effects make_plan(const scene::Facts& facts, const PlanSettings& settings) {
                                              settings.samples}));
     append(specular_rays::decide(facts, settings.specular_rays));
   }
+  append(denoise::decide({settings.denoise, settings.path_tracing, settings.samples, settings.shown_pass}));
   append(film::decide(settings.passes));
   leave_out(all, settings.shown_pass, settings.path_tracing);
   if (settings.force_all_effects)

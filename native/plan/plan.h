@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ambient_occlusion/settings.h"
+#include "denoise/settings.h"
 #include "film/passes.h"
 #include "path_tracer/decide.h"
 #include "plan/effect.h"
@@ -22,6 +23,7 @@ struct PlanSettings {
   ray_picture::Kind debug_picture = ray_picture::Kind::kNone;  // shown in place of the scene
   bool path_tracing = false;       // Primitive tracing, not Real-time
   path_tracer::DecideSettings paths;
+  denoise::Settings denoise;
   ambient_occlusion::Settings occlusion;  // these three: of Real-time
   radiance_cache::Settings cache;
   specular_rays::Settings specular_rays;

@@ -1,5 +1,7 @@
 #include "python/convert.h"
 
+#include "base/choices.h"
+
 #include "python/dict.h"
 #include "python/technique_settings.h"
 
@@ -161,7 +163,8 @@ engine::RenderRequest request(const py::dict& dict) {
       "tiles",                "buckets",             "bounces",          "diffuse_bounces",
       "glossy_bounces",       "transmission_bounces", "transparent_bounces", "clamp_direct",
       "clamp_indirect",       "filter_glossy",       "shadow_maps",      "raster_primary",
-      "ao_distance",          "occlusion",           "cache",            "specular_rays"};
+      "ao_distance",          "occlusion",           "cache",            "specular_rays",
+      "denoise"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -184,6 +187,10 @@ engine::RenderRequest request(const py::dict& dict) {
   r.structure.tiles = get(settings, "tiles", 0);
   r.structure.buckets = get(settings, "buckets", 0);
   r.paths = path_settings(settings);
+  const auto denoiser = get<std::string>(settings, "denoise", "off");
+  r.denoise.denoiser = find_choice<denoise::Denoiser>(denoise::kDenoiserNames, denoiser);
+  if (!known_choice(denoise::kDenoiserNames, r.denoise.denoiser))
+    fail("there is no denoiser '{}': choose one of {}", denoiser, fmt::join(denoise::kDenoiserNames, ", "));
   r.occlusion = occlusion_settings(get(settings, "occlusion", py::dict()));
   r.cache = cache_settings(get(settings, "cache", py::dict()));
   r.specular_rays = specular_settings(get(settings, "specular_rays", py::dict()));

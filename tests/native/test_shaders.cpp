@@ -1,6 +1,7 @@
 // Every permutation that native code can ask for: valid to the reference compiler, and accepted by
 // the driver at hand.
 #include "base/error.h"
+#include "denoise/edge_avoiding.h"
 #include "film/film.h"
 #include "gl/context.h"
 #include "gl/program.h"
@@ -331,6 +332,8 @@ class Shaders : public ::testing::Test {
         add(ray_picture::false_colour_program(ray_picture::Kind(kind), film));
       }
     add(ray_picture::camera_rays_program());
+    for (bool smooths : {false, true})
+      for (bool positions : {false, true}) add(denoise::filter_program(smooths, positions));
     add(tracing::flatten_program());
     add(radiance_cache::mark_seen_program());
     for (gl::ProgramSource& source : radiance_cache::volume_programs()) add(std::move(source));
