@@ -259,3 +259,11 @@ def test_edits_in_a_3d_view_are_timed_beside_cycles(tmp_path):
     for engine, row in found["rows"].items():
         assert 0.0 < row["first s"] <= row["full s"] and 0.0 < row["rmse"] < 0.5
         assert shown(tmp_path / f"viewport_two_spots_{engine.lower()}.png").shape[:2] == tuple(found["size"][::-1])
+
+
+def test_what_the_denoiser_makes_of_few_samples():
+    found = bench("denoise.py", "--scene", ROOT / "blend_scenes" / "doorway.blend", "--size", "48x27", "--samples", "2,4",
+                  "--reference", "32")
+    for row in found["denoise"]:
+        assert row["denoised_srgb"] < row["noisy_srgb"] and row["worth"] > row["samples"]
+        assert row["denoiser_ms"] > 0.0 and 0.0 < row["estimate"] < 10.0

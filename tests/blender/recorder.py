@@ -51,7 +51,7 @@ class Recorder:
 class Job:
     """A job that is done before it starts."""
 
-    _CHANNELS = {'Combined': 4, 'Depth': 1, 'Debug Sample Count': 1}
+    _CHANNELS = {'Combined': 4, 'Depth': 1, 'Debug Sample Count': 1, 'Noisy Image': 4}
 
     def __init__(self, request):
         self._request = request

@@ -190,10 +190,14 @@ TEST_F(EdgeAvoiding, ShadowEdgesSurviveWhereTheNoiseAllows) {
 }
 
 TEST_F(EdgeAvoiding, ADenoisedPictureBecomesThatOfTheSamples) {
-  // Light that no guide tells of, finer than the filter.
+  // Light that no guide tells of, finer than the filter and without a period.
   Truth truth;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> light(0.6f, 1.4f);
+  Values blocks(kPixels);
+  for (float& b : blocks) b = light(random);
   Truth::each([&](int x, int y, size_t i) {
-    for (size_t c = 0; c < 3; ++c) truth.light[3 * i + c] = (x / 2 + y / 2) % 2 ? 1.2f : 0.8f;
+    for (size_t c = 0; c < 3; ++c) truth.light[3 * i + c] = blocks[size_t(y / 2 * kWidth + x / 2)];
   });
   denoise::Denoise denoiser;
   double before = 1e9;
@@ -203,7 +207,9 @@ TEST_F(EdgeAvoiding, ADenoisedPictureBecomesThatOfTheSamples) {
     const double off = rmse(truth, m.pixels), noise = rmse(truth, n.pixels);
     EXPECT_LT(off, 1.05 * noise) << samples;
     EXPECT_LT(off, before);
-    EXPECT_NEAR(m.error / (off / 0.5), 1, 0.6) << samples;
+    // The filter adapts to the noise: its bias stays about as large, where it is hard to see.
+    EXPECT_GT(m.error / (off / 0.5), 0.3) << samples;
+    EXPECT_LT(m.error / (off / 0.5), 1.5) << samples;
     before = off;
   }
 }

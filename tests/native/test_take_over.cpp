@@ -66,6 +66,20 @@ TEST_F(TakeOver, ShowsWhatIsNearerToTheTruthThanEither) {
   }
 }
 
+TEST_F(TakeOver, DenoisedPathsAreNearerStill) {
+  const std::vector<float> smooth = quick(), right = done(paths(1000, 1600))->read(Pass::kCombined);
+  for (uint32_t samples : {2u, 8u, 32u}) {
+    engine::RenderRequest r = paths(0, samples);
+    const double noisy = apart(done(r, {.smooth = smooth})->read_shown(), right);
+    r.denoise.denoiser = denoise::Denoiser::kEdgeAvoiding;
+    const auto job = done(r, {.smooth = smooth});
+    EXPECT_LT(apart(job->read_shown(), right), 0.95 * noisy) << samples;
+    // What a later job goes on from has its noise.
+    r.denoise.denoiser = denoise::Denoiser::kOff;
+    EXPECT_EQ(job->read(Pass::kCombined), done(r)->read(Pass::kCombined));
+  }
+}
+
 TEST_F(TakeOver, APictureThatIsContinuedIsThatOfAllItsSamples) {
   const std::vector<float> smooth = quick();
   const std::vector<float> whole = done(paths(0, 48), {.smooth = smooth})->read_shown();
