@@ -2,7 +2,7 @@
 #include "denoise/denoiser.h"
 #include "denoise/oidn.h"
 #include "gl/context.h"
-#include "support.h"
+#include "lit_room.h"
 
 #include "base/error.h"
 
@@ -253,27 +253,15 @@ TEST(Oidn, SaysWhyItFailed) {
 class DenoisedRender : public ::testing::Test {
  protected:
   DenoisedRender() {
-    TestScene s;
-    const Id grey = s.add_material(lambert(glm::vec3(0.7f)));
-    for (float z : {0.0f, 3.0f}) s.add_object(floor_at(z, 2), {grey});
-    s.add_object(quad({-2, 0, 1.5f}, {0, 2, 0}, {0, 0, 1.5f}), {s.add_material(lambert({0.8f, 0.1f, 0.1f}))});
-    s.add_object(quad({0, 2, 1.5f}, {2, 0, 0}, {0, 0, 1.5f}), {grey});
-    s.lights = {area({0, 0, 2.9f}, {0, 0, -1}, 60, scene::AreaShape::kSquare, 0.8f, 0.8f)};
-    shared_engine().edit([&](scene::Scene& scene) { s.install(scene); });
+    shared_engine().edit([](scene::Scene& scene) { lit_room().install(scene); });
   }
   static engine::RenderRequest paths(uint32_t first, uint32_t last, denoise::Denoiser denoiser) {
-    engine::RenderRequest r = request(perspective({0, -4, 1.5}, {0, 0, 1.5}, 0.8, 64, 48), {}, last);
+    engine::RenderRequest r = request(into_the_room(64, 48), {}, last);
     r.first_sample = first;
     r.method = engine::Method::kPrimitive;
     r.denoise.denoiser = denoiser;
     r.passes.set(size_t(film::Pass::kNoisyImage));
     return r;
-  }
-  static std::shared_ptr<engine::Job> done(const engine::RenderRequest& r) {
-    const auto job = shared_engine().render(r);
-    EXPECT_TRUE(job->wait(120));
-    job->check();
-    return job;
   }
   static engine::EffectReport effect(const engine::Job& job) {
     for (const engine::EffectReport& e : job.stats().effects)
@@ -281,21 +269,16 @@ class DenoisedRender : public ::testing::Test {
     ADD_FAILURE() << "the denoiser is not in the plan";
     return {};
   }
-  static double apart(const Values& a, const Values& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - b[i], 2);
-    return std::sqrt(sum / double(a.size()));
-  }
 };
 
 using denoise::Denoiser;
 using film::Pass;
 
 TEST_F(DenoisedRender, IsNearerToTheTruthAndKeepsTheNoisyImage) {
-  const Values right = done(paths(5000, 5600, Denoiser::kOff))->read(Pass::kCombined);
+  const Values right = finished(paths(5000, 5600, Denoiser::kOff))->read(Pass::kCombined);
   for (uint32_t samples : {2u, 8u, 32u}) {
-    const auto job = done(paths(0, samples, Denoiser::kEdgeAvoiding));
-    const Values noisy = done(paths(0, samples, Denoiser::kOff))->read(Pass::kCombined);
+    const auto job = finished(paths(0, samples, Denoiser::kEdgeAvoiding));
+    const Values noisy = finished(paths(0, samples, Denoiser::kOff))->read(Pass::kCombined);
     EXPECT_EQ(job->read(Pass::kNoisyImage), noisy);
     EXPECT_LT(apart(job->read(Pass::kCombined), right), 0.6 * apart(noisy, right)) << samples;
     EXPECT_TRUE(effect(*job).runs);
@@ -304,25 +287,25 @@ TEST_F(DenoisedRender, IsNearerToTheTruthAndKeepsTheNoisyImage) {
 }
 
 TEST_F(DenoisedRender, TellsWhyItDoesNotRun) {
-  const auto one = done(paths(0, 1, Denoiser::kEdgeAvoiding));
+  const auto one = finished(paths(0, 1, Denoiser::kEdgeAvoiding));
   EXPECT_EQ(effect(*one).reason, "one sample does not tell its noise");
   EXPECT_EQ(one->read(Pass::kCombined), one->read(Pass::kNoisyImage));
   engine::RenderRequest r = paths(0, 2, Denoiser::kEdgeAvoiding);
   r.method = engine::Method::kRealtime;
-  EXPECT_EQ(effect(*done(r)).reason, "Real-time's pictures have too little noise for it");
-  EXPECT_EQ(effect(*done(paths(0, 2, Denoiser::kOff))).reason, "switched off in the settings");
+  EXPECT_EQ(effect(*finished(r)).reason, "Real-time's pictures have too little noise for it");
+  EXPECT_EQ(effect(*finished(paths(0, 2, Denoiser::kOff))).reason, "switched off in the settings");
 }
 
 TEST_F(DenoisedRender, AutomaticTakesOidnAndAFailureLeavesTheOther) {
   // The stand-in's picture is far off: the samples show through.
-  const auto job = done(paths(0, 64, Denoiser::kAuto));
-  const Values noisy = job->read(Pass::kNoisyImage), ours = done(paths(0, 64, Denoiser::kEdgeAvoiding))->read(Pass::kCombined);
+  const auto job = finished(paths(0, 64, Denoiser::kAuto));
+  const Values noisy = job->read(Pass::kNoisyImage), ours = finished(paths(0, 64, Denoiser::kEdgeAvoiding))->read(Pass::kCombined);
   EXPECT_NE(job->read(Pass::kCombined), ours);
   EXPECT_LT(apart(job->read(Pass::kCombined), noisy), 0.3 * apart(noisy, Values(noisy.size())));
   // The light is negative.
   engine::RenderRequest r = paths(0, 4, Denoiser::kOidn);
   r.exposure = -1;
-  const auto failed = done(r);
+  const auto failed = finished(r);
   ASSERT_EQ(failed->stats().warnings.size(), 1u);
   EXPECT_NE(failed->stats().warnings[0].find("OpenImageDenoise failed (a negative colour)"), std::string::npos);
 }
@@ -331,7 +314,7 @@ TEST_F(DenoisedRender, OfWhatALensBlurs) {
   engine::RenderRequest r = paths(0, 8, Denoiser::kEdgeAvoiding);
   r.camera.lens.radius = 0.05;
   r.camera.lens.focus_distance = 2;
-  const auto job = done(r);
+  const auto job = finished(r);
   EXPECT_TRUE(effect(*job).runs);
   EXPECT_NE(job->read(Pass::kCombined), job->read(Pass::kNoisyImage));
 }

@@ -229,7 +229,7 @@ TEST(FramePlan, GivesAReasonForEverything) {
       EXPECT_FALSE(e.reason.empty()) << e.name;
       EXPECT_TRUE(names.insert(e.name).second) << e.name << " is there twice";
     }
-    EXPECT_EQ(names.size(), 15u + 5u + 6u + 5u + size_t(film::kPassCount));
+    EXPECT_EQ(names.size(), 15u + 5u + 6u + 5u + 1u + size_t(film::kPassCount));
   }
 }
 

@@ -1,9 +1,7 @@
 // Paths that take over the picture that Real-time has made of a 3D View.
-#include "support.h"
+#include "lit_room.h"
 
 #include "base/error.h"
-
-#include <cmath>
 
 namespace panoptes::test {
 namespace {
@@ -14,20 +12,12 @@ constexpr int kWidth = 48, kHeight = 36;
 
 class TakeOver : public ::testing::Test {
  protected:
-  // A room with a red and a green wall.
   TakeOver() {
-    TestScene s;
-    const Id grey = s.add_material(lambert(glm::vec3(0.7f)));
-    for (float z : {0.0f, 3.0f}) s.add_object(floor_at(z, 2), {grey});
-    s.add_object(quad({-2, 0, 1.5f}, {0, 2, 0}, {0, 0, 1.5f}), {s.add_material(lambert({0.8f, 0.1f, 0.1f}))});
-    s.add_object(quad({2, 0, 1.5f}, {0, 2, 0}, {0, 0, 1.5f}), {s.add_material(lambert({0.1f, 0.8f, 0.1f}))});
-    s.add_object(quad({0, 2, 1.5f}, {2, 0, 0}, {0, 0, 1.5f}), {grey});
-    s.lights = {area({0, 0, 2.9f}, {0, 0, -1}, 60, scene::AreaShape::kSquare, 0.8f, 0.8f)};
-    shared_engine().edit([&](scene::Scene& scene) { s.install(scene); });
+    shared_engine().edit([](scene::Scene& scene) { lit_room().install(scene); });
   }
 
   static engine::RenderRequest look(uint32_t first, uint32_t last) {
-    engine::RenderRequest r = request(perspective({0, -4, 1.5}, {0, 0, 1.5}, 0.8, kWidth, kHeight), {}, last);
+    engine::RenderRequest r = request(into_the_room(kWidth, kHeight), {}, last);
     r.first_sample = first;
     r.live = r.viewport = true;
     return r;
@@ -37,28 +27,17 @@ class TakeOver : public ::testing::Test {
     r.method = engine::Method::kPrimitive;
     return r;
   }
-  static std::shared_ptr<engine::Job> done(const engine::RenderRequest& r, engine::TakeOver over = {}) {
-    const auto job = shared_engine().render(r, std::move(over));
-    EXPECT_TRUE(job->wait(120));
-    job->check();
-    return job;
-  }
   static std::vector<float> quick() {
     engine::RenderRequest r = look(0, 4);
     r.cache.enabled = true;
-    return done(r)->read(Pass::kCombined);
-  }
-  static double apart(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - b[i], 2);
-    return std::sqrt(sum / double(a.size()));
+    return finished(r)->read(Pass::kCombined);
   }
 };
 
 TEST_F(TakeOver, ShowsWhatIsNearerToTheTruthThanEither) {
-  const std::vector<float> smooth = quick(), right = done(paths(1000, 1600))->read(Pass::kCombined);
+  const std::vector<float> smooth = quick(), right = finished(paths(1000, 1600))->read(Pass::kCombined);
   for (uint32_t samples : {2u, 8u, 64u}) {
-    const auto job = done(paths(0, samples), {.smooth = smooth});
+    const auto job = finished(paths(0, samples), {.smooth = smooth});
     const std::vector<float> shown = job->read_shown(), noisy = job->read(Pass::kCombined);
     ASSERT_EQ(shown.size(), noisy.size());
     EXPECT_LT(apart(shown, right), 1.05 * std::min(apart(noisy, right), apart(smooth, right))) << samples;
@@ -67,31 +46,31 @@ TEST_F(TakeOver, ShowsWhatIsNearerToTheTruthThanEither) {
 }
 
 TEST_F(TakeOver, DenoisedPathsAreNearerStill) {
-  const std::vector<float> smooth = quick(), right = done(paths(1000, 1600))->read(Pass::kCombined);
+  const std::vector<float> smooth = quick(), right = finished(paths(1000, 1600))->read(Pass::kCombined);
   for (uint32_t samples : {2u, 8u, 32u}) {
     engine::RenderRequest r = paths(0, samples);
-    const double noisy = apart(done(r, {.smooth = smooth})->read_shown(), right);
+    const double noisy = apart(finished(r, {.smooth = smooth})->read_shown(), right);
     r.denoise.denoiser = denoise::Denoiser::kEdgeAvoiding;
-    const auto job = done(r, {.smooth = smooth});
+    const auto job = finished(r, {.smooth = smooth});
     EXPECT_LT(apart(job->read_shown(), right), 0.95 * noisy) << samples;
     // What a later job goes on from has its noise.
     r.denoise.denoiser = denoise::Denoiser::kOff;
-    EXPECT_EQ(job->read(Pass::kCombined), done(r)->read(Pass::kCombined));
+    EXPECT_EQ(job->read(Pass::kCombined), finished(r)->read(Pass::kCombined));
   }
 }
 
 TEST_F(TakeOver, APictureThatIsContinuedIsThatOfAllItsSamples) {
   const std::vector<float> smooth = quick();
-  const std::vector<float> whole = done(paths(0, 48), {.smooth = smooth})->read_shown();
-  const std::vector<float> first = done(paths(0, 16), {.smooth = smooth})->read(Pass::kCombined);
-  const std::vector<float> continued = done(paths(16, 48), {smooth, first, 16})->read_shown();
+  const std::vector<float> whole = finished(paths(0, 48), {.smooth = smooth})->read_shown();
+  const std::vector<float> first = finished(paths(0, 16), {.smooth = smooth})->read(Pass::kCombined);
+  const std::vector<float> continued = finished(paths(16, 48), {smooth, first, 16})->read_shown();
   // Only what the noise is taken for differs.
   EXPECT_LT(apart(continued, whole), 0.3 * apart(whole, smooth));
 }
 
 TEST_F(TakeOver, OneSampleDoesNotTellItsNoise) {
-  EXPECT_TRUE(done(paths(0, 1), {.smooth = quick()})->read_shown().empty());
-  EXPECT_TRUE(done(paths(0, 4))->read_shown().empty()) << "there is nothing to take over";
+  EXPECT_TRUE(finished(paths(0, 1), {.smooth = quick()})->read_shown().empty());
+  EXPECT_TRUE(finished(paths(0, 4))->read_shown().empty()) << "there is nothing to take over";
 }
 
 TEST_F(TakeOver, RefusesPicturesOfAnotherSize) {
