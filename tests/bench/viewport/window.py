@@ -24,8 +24,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import engines  # noqa: E402
 
-# A picture that has not changed for so many seconds is finished; one that still does after the limit never will be.
-QUIET, LIMIT = 2.0, 120.0
+# A picture that has not changed for so many seconds is finished; one that still does after the limit never will be. The
+# first one may rest for longer in between, while programs are compiled.
+QUIET, FIRST_QUIET, LIMIT = 2.0, 8.0, 120.0
 POLL = 0.02
 MOVE_METRES = 0.01
 
@@ -76,13 +77,13 @@ class Watch:
         """Forget when, but not what."""
         self.since, self.first, self.last = time.perf_counter(), 0.0, 0.0
 
-    def finished(self):
-        """Tell whether the picture has changed, and does so no more."""
+    def finished(self, quiet=QUIET):
+        """Tell whether the picture has changed, and has not done so for `quiet` seconds."""
         self.look()
         now = time.perf_counter()
         if now - self.since > LIMIT:
             raise TimeoutError('the 3D View does not come to rest')
-        return self.last > 0.0 and now - self.last > QUIET
+        return self.last > 0.0 and now - self.last > quiet
 
 
 def prepare(job):
@@ -118,7 +119,7 @@ def measure(job):
     watch = Watch(Screen(job['screen']))
     prepare(job)
     watch.begin()
-    while not watch.finished():
+    while not watch.finished(FIRST_QUIET):
         yield
     found = []
     for number in range(job['edits']):
