@@ -36,14 +36,23 @@ void main() {
   // The cells that a look-up here can go to: none beyond the far side of its own.
   ivec3 low = max(own - ivec3(lessThanEqual(half_way, ivec3(0))), ivec3(0));
   ivec3 high = min(own + ivec3(greaterThanEqual(half_way, ivec3(0))), volume.cells.xyz - 1);
-  uint bits = 0u;
+  uint bits = 0u, solid = 0u;  // solid: those with solid voxels
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        ivec3 at = ivec3(x, y, z);
+        if ((texelFetch(seeds, cell_number(volume, at)).x & CELL_OCCUPIED) != 0u) solid |= reach_bit(at - own);
+      }
   if (holds_voxel(volume, voxel) && !voxel_is_solid(volume, voxel))
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
           ivec3 at = ivec3(x, y, z);
           uint seed = texelFetch(seeds, cell_number(volume, at)).x & SEED_CODE;
-          if (seed != 0u && sees(volume, at * side + seed_voxel(seed), voxel)) bits |= reach_bit(at - own);
+          if (seed == 0u) continue;
+          // Between empty cells nothing stands in the way.
+          bool open = (solid & reach_bits_between(at - own)) == 0u;
+          if (open || sees(volume, at * side + seed_voxel(seed), voxel)) bits |= reach_bit(at - own);
         }
   reach[number] = bits;
 }
