@@ -5,6 +5,7 @@
 #include "film/display.h"
 #include "film/mixture.h"
 #include "gl/counters.h"
+#include "gl/heap_pieces.h"
 #include "plan/plan.h"
 #include "plan/shown_pass.h"
 
@@ -70,7 +71,9 @@ std::vector<EffectReport> report(const plan::Effects& plan,
 RenderThread::RenderThread(const gl::ContextOptions& options)
     : context_(options), timer_(context_.device()), gpu_scene_(context_.device()),
       realtime_(context_.device(), programs_, timer_), traced_(context_.device()),
-      path_tracer_(context_.device(), programs_, timer_) {}
+      path_tracer_(context_.device(), programs_, timer_) {
+  if (context_.device().software) gl::keep_heap_in_pieces();
+}
 
 void RenderThread::render(Job& job, SharedScene& scene, std::atomic<bool>& spoiled) {
   std::string error;
