@@ -18,7 +18,7 @@ from .time_left import TimeLeft
 
 # Seconds for which an outdated job may go on when it has not shown anything yet.
 _GRACE = 1.0
-_POLL_INTERVAL = 0.01
+_POLL_INTERVAL = 0.03
 
 # Viewports that show the same objects of the same view layer see the same edits, so they share what
 # is known of the scene.
