@@ -213,7 +213,8 @@ class PanoptesViewLayerSettings(bpy.types.PropertyGroup):
 
 _CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, occlusion_properties.PanoptesOcclusionSettings,
             radiance_cache_properties.PanoptesRadianceCacheSettings, specular_rays.PanoptesSpecularRaysSettings,
-            denoising.PanoptesDenoiseSettings, PanoptesSceneSettings, PanoptesViewLayerSettings, radiance_cache_properties.PanoptesObjectSettings)
+            denoising.PanoptesDenoiseSettings, PanoptesSceneSettings, PanoptesViewLayerSettings,
+            radiance_cache_properties.PanoptesObjectSettings)
 
 
 def register():

@@ -167,12 +167,17 @@ class Turns:
         """Tell whether `take` would succeed."""
         return all(not refinement.samples and other.samples for other in self._others(refinement))
 
-    def take(self, refinement):
-        """Tell whether a refinement may start its job; interrupts those that can wait."""
+    def take(self, refinement, start):
+        """Call `start`, which starts the refinement's job, if it may run; interrupts those that can wait.
+
+        Tells whether it was called.
+        """
         if not self.is_free(refinement):
             return False
         for other in self._others(refinement):
             other.interrupt()
+        start()
+        # Not before: without a job it would count as one that has ended.
         with self._lock:
             self._running = [r for r in self._running if r is not refinement] + [refinement]
         return True

@@ -154,13 +154,15 @@ class Viewport:
 
     def _start(self, context, depsgraph):
         """Start the picture's job if it is this view's turn."""
-        picture, mirror = self._picture, session.mirror()
-        if not picture.is_ready() or not session.turns.take(picture):
-            return
-        if mirror.owner is not _sync_for(depsgraph, _space(context)):
-            # Another view or a final render has written its own version of the scene.
-            self._sync(context, depsgraph)
-        picture.start(mirror.engine)
+        def start():
+            mirror = session.mirror()
+            if mirror.owner is not _sync_for(depsgraph, _space(context)):
+                # Another view or a final render has written its own version of the scene.
+                self._sync(context, depsgraph)
+            self._picture.start(mirror.engine)
+
+        if self._picture.is_ready():
+            session.turns.take(self._picture, start)
 
     def _advance(self):
         """Fetch the newest samples."""

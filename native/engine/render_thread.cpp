@@ -339,7 +339,9 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
       job.end_first_sample();
     }
     if (!film_.all_active() && film_.active_count() == 0) break;
-    if (request.live && (done == 1 || ms_since(last_live) > std::max(kLiveIntervalMs, kLiveShare * live_ms))) {
+    // The last sample's picture follows with all passes.
+    const bool due = done == 1 || ms_since(last_live) > std::max(kLiveIntervalMs, kLiveShare * live_ms);
+    if (request.live && due && done < wanted) {
       // It changes slowly, and is not worth a copy of the film each time.
       if (!mixes && done >= 2 * error_at) {
         live_error = film_.estimated_error();

@@ -1,7 +1,6 @@
 #include "python/convert.h"
 
 #include "base/choices.h"
-
 #include "python/dict.h"
 #include "python/technique_settings.h"
 

@@ -216,16 +216,20 @@ class TestChangeover:
         assert isinstance(changeover.picture(request, 'key'), Refinement)
 
 
+def unwanted():
+    """Of a turn that must not begin."""
+    raise AssertionError
+
+
 class TestTurns:
     def start(self, turns, engine, found):
-        assert turns.take(found)
-        found.start(engine)
+        assert turns.take(found, lambda: found.start(engine))
 
     def test_a_view_with_nothing_to_show_goes_first(self, engine):
         turns, smooth, new = Turns(), picture(), picture()
         self.start(turns, engine, smooth)
         # The first sample is never taken away.
-        assert not turns.take(new)
+        assert not turns.take(new, unwanted)
         engine.jobs[0].done = 1
         smooth.advance()
         self.start(turns, engine, new)
@@ -239,11 +243,25 @@ class TestTurns:
         self.start(turns, engine, other)
         engine.jobs[1].done = 1
         other.advance()
-        assert not turns.is_free(one) and not turns.take(one)
+        assert not turns.is_free(one) and not turns.take(one, unwanted)
         engine.jobs[1].done = 8
         assert turns.is_free(one)
         self.start(turns, engine, one)
         assert engine.jobs[2].first == 1
+
+    def test_a_scene_that_was_written_for_a_job_is_kept_until_it_has_read_it(self, engine):
+        turns, one, other = Turns(), picture(), picture()
+
+        def write_and_start():
+            # As a view does that finds another view's version of the scene.
+            turns.interrupt_unread()
+            one.start(engine)
+
+        assert turns.take(one, write_and_start)
+        # Nobody else writes his own before, and if he must, the job is done again.
+        assert not turns.take(other, unwanted)
+        turns.interrupt_unread()
+        assert engine.jobs[0].stopped
 
     def test_a_scene_that_changes_before_a_job_has_read_it(self, engine):
         turns, one = Turns(), picture()
