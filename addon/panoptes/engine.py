@@ -60,7 +60,7 @@ class PanoptesRenderEngine(bpy.types.RenderEngine):
 
     def view_update(self, context, depsgraph):
         """Called after edits while a 3D View is rendered."""
-        self._viewport().update(context, depsgraph)
+        self._viewport().update(self, context, depsgraph)
 
     def view_draw(self, context, depsgraph):
         """Draw the 3D View."""

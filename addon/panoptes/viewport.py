@@ -18,7 +18,7 @@ from .time_left import TimeLeft
 
 # Seconds for which an outdated job may go on when it has not shown anything yet.
 _GRACE = 1.0
-_POLL_INTERVAL = 0.03
+_POLL_INTERVAL = 0.01
 
 # Viewports that show the same objects of the same view layer see the same edits, so they share what
 # is known of the scene.
@@ -67,8 +67,8 @@ class Viewport:
         self.polling = False
         session.viewports.add(self)
 
-    def update(self, context, depsgraph):
-        """Bring the native scene up to date; called after every edit."""
+    def update(self, engine, context, depsgraph):
+        """Bring the native scene up to date, and begin its picture; called after every edit."""
         with session.exclusive(wait=False) as held:
             if not held:
                 # A final render has the engine; all is read again afterwards.
@@ -77,6 +77,8 @@ class Viewport:
             self._failure = ''
             try:
                 self._sync(context, depsgraph)
+                # The first sample is under way while Blender redraws its window.
+                self._refine(engine, context, depsgraph)
             except Exception as error:  # whatever it was, Blender must go on
                 self._failure = session.sentence(error)
 
@@ -100,7 +102,10 @@ class Viewport:
                 _redraw_later(engine, self, 0.5)
                 return
             try:
-                self._draw(engine, context, depsgraph)
+                self._refine(engine, context, depsgraph)
+                engine.update_stats('Panoptes', self._status())
+                if self.is_rendering():
+                    _redraw_later(engine, self, _POLL_INTERVAL)
             except Exception as error:  # whatever it was, Blender must go on
                 self.close()
                 self._failure = session.sentence(error)
@@ -108,7 +113,8 @@ class Viewport:
             engine.update_stats('Panoptes', self._failure)
         self._draw_last()
 
-    def _draw(self, engine, context, depsgraph):
+    def _refine(self, engine, context, depsgraph):
+        """Fetch what there is of the newest picture, and keep rendering what the view shows now."""
         warnings, shown = [], view_shading.shown(depsgraph.scene, _space(context))
         request, rectangle = requests.viewport(
             depsgraph, context.region, context.region_data, _space(context),
@@ -128,9 +134,6 @@ class Viewport:
         if not self._picture.is_complete() and self._picture.is_fetched():
             self._start(context, depsgraph)
         self._advance()
-        engine.update_stats('Panoptes', self._status())
-        if self.is_rendering():
-            _redraw_later(engine, self, _POLL_INTERVAL)
 
     def _follow(self, request, budget):
         """Note what the view shows now, and choose how coarsely."""

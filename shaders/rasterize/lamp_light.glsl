@@ -39,13 +39,18 @@ vec3 unshadowed_light(Light light, vec3 position, out vec3 to_light) {
   return clamp(irradiance, vec3(-1.0e30), vec3(1.0e30));
 }
 
-// The same from lamp `k` past what stands between; only the receiver's position matters where the
-// lamp casts no shadow.
+// The share of it that arrives past what stands between, 0..1; only the receiver's position matters where the lamp
+// casts no shadow.
+float arriving_share(Light light, Receiver receiver, vec3 to_light) {
+#if SHADOWS
+  if (light.shadow != NO_SHADOW) return shadow(light, receiver, to_light);
+#endif
+  return 1.0;
+}
+
+// Both together, from lamp `k`.
 vec3 lamp_light(uint k, Receiver receiver, out vec3 to_light) {
   Light light = lights[k];
   vec3 irradiance = unshadowed_light(light, receiver.position, to_light);
-#if SHADOWS
-  if (light.shadow != NO_SHADOW) irradiance *= shadow(light, receiver, to_light);
-#endif
-  return irradiance;
+  return irradiance == vec3(0.0) ? irradiance : irradiance * arriving_share(light, receiver, to_light);
 }

@@ -21,14 +21,20 @@ struct ShadowView {
   bool perspective;
   vec2 place;     // in texels, of the face's own grid
   float depth;    // along the axis
-  float along;    // receiver's plane: see met_depth()
-  vec2 slope;
-  float bias;     // towards the light, metres along the axis
-  float reach;    // metres that the plane may be followed
+  // The receiver's plane, moved towards the light, as the map would store it: there, and a texel further. What a map
+  // stores of a plane is linear over its texels.
+  float stored;
+  vec2 rise;
+  vec2 range;     // as far as the plane is followed: the least and the most
+  float horizon;  // below it the plane is met nowhere
 };
 
 // How far a surface may rise from texel to texel, in texels, before its slope counts no further.
 const float STEEPEST = 256.0;
+
+float stored_depth(ShadowView v, float depth) {
+  return v.perspective ? v.face.depth.x / depth + v.face.depth.y : v.face.depth.x * depth + v.face.depth.y;
+}
 
 // False where the face does not see the receiver.
 bool look_at(ShadowFace f, Receiver r, vec3 to_light, out ShadowView v) {
@@ -52,27 +58,27 @@ bool look_at(ShadowFace f, Receiver r, vec3 to_light, out ShadowView v) {
 
   // The plane in the map's frame, per unit of the map's coordinates; depths are taken relative to
   // the receiver's, since the normal is not exact enough for the plane's distance from the lamp.
-  v.along = v.perspective ? dot(n, p) / v.depth : dot(n, f.axis.xyz);
-  v.slope = vec2(dot(n, f.x.xyz) * f.half_extent.x * f.half_extent.x,
-                 dot(n, f.y.xyz) * f.half_extent.y * f.half_extent.y) * (2.0 / f.half_extent.w);
+  float along = v.perspective ? dot(n, p) / v.depth : dot(n, f.axis.xyz);
+  vec2 slope = vec2(dot(n, f.x.xyz) * f.half_extent.x * f.half_extent.x,
+                    dot(n, f.y.xyz) * f.half_extent.y * f.half_extent.y) * (2.0 / f.half_extent.w);
+  slope /= abs(along) > 1.0e-20 ? along : 1.0e-20;
   float texel = f.origin.w * spread;
   float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1.0e-6);
   float magnitude = max(max(abs(p.x), abs(p.y)), abs(p.z));
-  v.bias = texel * (0.5 + 0.25 * min(tangent, 2.0)) + 1.0e-6 * magnitude;
-  v.reach = STEEPEST * texel;
+  float moved = v.depth - texel * (0.5 + 0.25 * min(tangent, 2.0)) - 1.0e-6 * magnitude;
+  float reach = STEEPEST * texel;
+  // The plane may go on behind the far end, where the map says that nothing is.
+  v.range = max(vec2(stored_depth(v, moved + reach), stored_depth(v, max(moved - reach, f.depth.z))), 0.0);
+  v.stored = stored_depth(v, max(moved, f.depth.z));
+  v.rise = slope * (v.perspective ? v.stored - f.depth.y : -f.depth.x);
+  v.horizon = v.perspective ? f.depth.y : -3.0e38;
   return true;
 }
 
-// What a map would store `offset` texels from the receiver if its plane were there, biased.
+// What the map would store `offset` texels from the receiver if its plane were there.
 float plane_depth(ShadowView v, vec2 offset) {
-  float across = dot(offset, v.slope);
-  float met = v.perspective ? v.depth * v.along / (v.along + across) : v.depth - across / v.along;
-  // A plane seen edge-on is met nowhere.
-  if (!(abs(met - v.depth) <= v.reach)) met = met > v.depth ? v.depth + v.reach : v.depth - v.reach;
-  met = max(met - v.bias, v.face.depth.z);
-  // The plane may go on behind the far end, where the map says that nothing is.
-  return max(v.perspective ? v.face.depth.x / met + v.face.depth.y
-                           : v.face.depth.x * met + v.face.depth.y, 0.0);
+  float stored = v.stored + dot(offset, v.rise);
+  return stored < v.horizon ? v.range.y : clamp(stored, v.range.x, v.range.y);
 }
 
 const vec2 TAPS[4] = vec2[4](vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(1.0, 0.0), vec2(0.0, 0.0));
@@ -106,12 +112,10 @@ const float NEAREST_BLOCKER = 0.2;
 // Of the map's width, on either side; a wider search would step over what it looks for.
 const float WIDEST_SEARCH = 0.08;
 
-// Points of a disk, evenly spread (Vogel 1979).
-vec2 disk_tap(int i, float turn) {
-  float radius = sqrt((float(i) + 0.5) / float(DISK_TAPS));
-  float angle = float(i) * 2.39996323 + turn * 6.28318531;
-  return radius * vec2(cos(angle), sin(angle));
-}
+// Points of a disk, evenly spread (Vogel 1979): each is turned on from the one before by the golden angle.
+const mat2 GOLDEN_TURN = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
+
+float disk_radius(int i) { return sqrt((float(i) + 0.5) / float(DISK_TAPS)); }
 
 // Radius of the penumbra at the receiver's place in the map, in texels, for a blocker at `depth`.
 float penumbra(ShadowView v, float size, float depth) {
@@ -126,8 +130,9 @@ float filtered(ShadowView v, float size, float random) {
   float widest = WIDEST_SEARCH * v.face.half_extent.w;
   float search = min(penumbra(v, size, nearest), widest);
   float blockers = 0.0, depths = 0.0;
-  for (int i = 0; i < DISK_TAPS; ++i) {
-    vec2 at = v.place + disk_tap(i, random) * search, corner = floor(at);
+  vec2 first = vec2(cos(random * 6.28318531), sin(random * 6.28318531)), direction = first;
+  for (int i = 0; i < DISK_TAPS; ++i, direction = GOLDEN_TURN * direction) {
+    vec2 at = v.place + direction * (disk_radius(i) * search), corner = floor(at);
     vec4 stored = gather(v, corner);
     for (int k = 0; k < 4; ++k)
       if (stored[k] > plane_depth(v, corner + TAPS[k] - v.place)) {
@@ -140,8 +145,9 @@ float filtered(ShadowView v, float size, float random) {
   float radius = min(penumbra(v, size, min(depths / blockers, v.depth)), widest);
   if (radius < 1.0) return nearest_texels(v);
   float lit = 0.0;
-  for (int i = 0; i < DISK_TAPS; ++i) {
-    vec2 at = v.place + disk_tap(i, random) * radius, corner = floor(at);
+  direction = first;
+  for (int i = 0; i < DISK_TAPS; ++i, direction = GOLDEN_TURN * direction) {
+    vec2 at = v.place + direction * (disk_radius(i) * radius), corner = floor(at);
     vec2 fraction = at - corner;
     vec4 stored = gather(v, corner);
     for (int k = 0; k < 4; ++k) {

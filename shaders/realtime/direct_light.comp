@@ -37,12 +37,22 @@ void main() {
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
   for (uint k = first_light; k < first_light + light_count; ++k) {
     vec3 to_light;
-    vec3 irradiance = lamp_light(k, receiver, to_light);
-    vec3 arriving = irradiance * incidence(g.smooth_normal, g.normal, to_light);
+    Light light = lights[k];
+    vec3 irradiance = unshadowed_light(light, g.position, to_light);
+    float incident = incidence(g.smooth_normal, g.normal, to_light);
+    float lit = incident;
+#if LAYERS && GLOSSY
+    float incident_coat = incidence(g.smooth_normal, g.coat_normal, to_light);
+    lit += incident_coat;
+#endif
+    // Half of most surfaces turns away from a lamp: no need to look who else stands in its light.
+    if (lit == 0.0 || irradiance == vec3(0.0)) continue;
+    irradiance *= arriving_share(light, receiver, to_light);
+    vec3 arriving = irradiance * incident;
     diffuse += arriving * g.diffuse * diffuse_lobe(g.diffuse_roughness, g.normal, v, to_light);
 #if GLOSSY
     // Rays meet glowing surfaces themselves.
-    uint met = lights[k].type == LIGHT_MESH ? followed : 0u;
+    uint met = light.type == LIGHT_MESH ? followed : 0u;
     if ((met & FOLLOWS_SPECULAR) == 0u)
       glossy += arriving * glossy_lobe(g.specular, g.grazing, g.specular_ior, g.roughness, g.normal,
                                        v, to_light);
@@ -51,7 +61,7 @@ void main() {
     diffuse += arriving * g.sheen * sheen_lobe(g.sheen_roughness, g.normal, v, to_light);
 #if GLOSSY
     if ((met & FOLLOWS_COAT) == 0u)
-      glossy += irradiance * incidence(g.smooth_normal, g.coat_normal, to_light) * g.coat *
+      glossy += irradiance * incident_coat * g.coat *
                 coat_lobe(g.coat_roughness, g.coat_normal, v, to_light);
 #endif
 #endif
