@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside a Blender with a window: edits what a 3D View shows, and compares with pictures of a fresh engine.
 
--- OUT.json edits           each edit in turn
--- OUT.json walk N SEED     N of them by chance, undo and redo among them; compared every ten
+-- OUT.json edits LIGHT [some]     each edit in turn, or some of them
+-- OUT.json walk LIGHT N SEED      N of them by chance, undo and redo among them; compared every ten
+
+LIGHT is how the 3D View renders: direct (Real-time without the radiance cache), cache (with it), or paths.
 """
 
 import os
@@ -21,7 +23,7 @@ from window_steps import area, run  # noqa: E402
 import edit_scene  # noqa: E402
 import edits  # noqa: E402
 import fresh  # noqa: E402
-from edit_list import ACTIONS, WALKED  # noqa: E402
+from edit_list import ACTIONS, APART, SOME, WALKED  # noqa: E402
 
 import panoptes  # noqa: E402
 from panoptes import native  # noqa: E402
@@ -36,7 +38,8 @@ _UNRECORDED = {edits.undo, edits.redo, edits.orbit, edits.zoom, edits.solid, edi
 class Walk:
     """What all steps of a run share."""
 
-    def __init__(self, seed):
+    def __init__(self, light, seed):
+        self.light = light
         self.random = random.Random(seed)
         self.jobs = []
         self.since = 0.0
@@ -46,7 +49,7 @@ class Walk:
         fresh.note_jobs(self.jobs)
 
     def start(self):
-        """A small 3D View alone in the window, few samples, and no light in which earlier pictures have a share."""
+        """A small 3D View alone in the window, and as few samples as its light allows."""
         panoptes.register()
         scene = bpy.context.scene
         scene.render.engine = 'PANOPTES'
@@ -54,9 +57,11 @@ class Walk:
         edit_scene.build()
         scene.render.preview_pixel_size = str(fresh.PIXEL)
         settings = scene.panoptes
-        settings.method, settings.viewport_samples = 'realtime', 2
+        paths = self.light == 'paths'
+        settings.method, settings.viewport_samples = ('primitive', 16) if paths else ('realtime', 2)
         settings.realtime.shadow_resolution = 128
-        settings.radiance_cache.enabled = False
+        settings.radiance_cache.enabled = self.light == 'cache'
+        settings.denoise.viewport = False
         space = area('VIEW_3D').spaces[0]
         space.overlay.show_overlays = space.show_gizmo = False
         space.region_3d.view_perspective = 'PERSP'
@@ -116,15 +121,18 @@ class Walk:
             self.cost['samples'] = sum(job.samples for job in self.jobs)
             self.cost['seconds'] = time.monotonic() - self.since
         after = native.engine().counters()
-        views = [fresh.difference(view._pixels, request, space) for space, request, view in found]
-        if any(view['differing'] for view in views) and time.monotonic() - self.since < NOTICED:
+        views = [fresh.difference(fresh.pixels_of(view), request, space) for space, request, view in found]
+        wrong = any(view['differing'] if self.light == 'direct' else view['apart'] > APART[self.light] for view in views)
+        if wrong and time.monotonic() - self.since < NOTICED:
             # The edit goes on, and only the fresh engines' share is no cost of it.
             self.before = {name: self.before[name] + native.engine().counters()[name] - after[name] for name in after}
             self.cost = None
             return None
-        shown, self.shown = self.shown, [view._pixels for _, _, view in found]
-        changed = len(shown) != len(self.shown) or not all(map(np.array_equal, shown, self.shown))
-        return {**self.cost, 'views': views, 'changed': changed, 'resident': resident(), 'at': time.monotonic()}
+        shown, self.shown = self.shown, [fresh.pixels_of(view) for _, _, view in found]
+        alike = len(shown) == len(self.shown) and all(a.shape == b.shape for a, b in zip(shown, self.shown))
+        changed = not alike or not all(map(np.array_equal, shown, self.shown))
+        moved = max(map(fresh.apart, shown, self.shown), default=0.0) if alike else None
+        return {**self.cost, 'views': views, 'changed': changed, 'moved': moved, 'resident': resident(), 'at': time.monotonic()}
 
     def completed(self):
         """Return the time as soon as the views are complete."""
@@ -147,12 +155,12 @@ def started(walk):
     return [*((f'close {n}', walk.close_area, walk.alone) for n in range(3)), ('start', walk.start, walk.compared)]
 
 
-def all_edits(walk):
-    """Return the steps of each edit in turn; names are numbered, since some edits are made twice."""
+def in_turn(walk, edits):
+    """Return the steps of edits in turn; names are numbered, since some edits are made twice."""
     def step(number, name):
         result = walk.played if name.startswith('play') else walk.compared
         return f'{number:02} {name}', lambda: walk.edit(name), result
-    return [*started(walk), *(step(n, name) for n, name in enumerate(ACTIONS))]
+    return [*started(walk), *(step(n, name) for n, name in enumerate(edits))]
 
 
 def by_chance(walk, count):
@@ -167,9 +175,10 @@ def by_chance(walk, count):
 
 def main():
     """Do what the command line asks for."""
-    kind, *more = sys.argv[sys.argv.index('--') + 2:]
-    walk = Walk(int(more[1]) if kind == 'walk' else 7)
-    run(by_chance(walk, int(more[0])) if kind == 'walk' else all_edits(walk), notice=0.1, poll=0.05)
+    kind, light, *more = sys.argv[sys.argv.index('--') + 2:]
+    walk = Walk(light, int(more[1]) if kind == 'walk' else 7)
+    steps = by_chance(walk, int(more[0])) if kind == 'walk' else in_turn(walk, SOME if more else ACTIONS)
+    run(steps, notice=0.1, poll=0.05)
 
 
 main()

@@ -4,12 +4,14 @@
 import bpy
 import numpy as np
 
-from panoptes import native, refinement, requests, session
+from panoptes import changeover, native, refinement, requests, session
 from panoptes.sync import Mirror, SceneSync
 from panoptes.viewport import _key
 
 # One pixel of a picture covers so many by so many of the region, so that pictures are soon done.
 PIXEL = 4
+# Pixels of a picture whose mean is compared where single ones depend on the order in which a scene is sent.
+BLOCK = 20
 
 
 def note_jobs(noted):
@@ -60,11 +62,31 @@ def picture(request, space):
         engine.close()
 
 
+def pixels_of(viewport):
+    """Return what a 3D View has rendered by its request: of a picture that changes over to paths, the paths' own."""
+    picture = viewport._picture
+    return picture._paths.pixels if isinstance(picture, changeover.Changeover) else viewport._pixels
+
+
+def apart(pixels, expected):
+    """Return by how much the mean of any block differs, as a share of its light or a tenth of the picture's."""
+    found, wanted = block_means(pixels), block_means(expected)
+    return float((np.abs(found - wanted) / np.maximum(np.abs(wanted), 0.1 * abs(wanted.mean()))).max())
+
+
+def block_means(pixels):
+    """Return the means of the blocks of a picture, RGB; those at the edges are smaller."""
+    height, width = pixels.shape[:2]
+    return np.array([pixels[y:y + BLOCK, x:x + BLOCK, :3].mean(axis=(0, 1))
+                     for y in range(0, height, BLOCK) for x in range(0, width, BLOCK)])
+
+
 def difference(shown_pixels, request, space):
-    """Return how many pixels of a view are not those of a fresh picture, and the largest difference."""
+    """Return how a view's picture differs from a fresh one: in how many pixels and by how much, and `apart` in blocks."""
     expected = picture(request, space)
     if expected.shape != shown_pixels.shape:
-        return {'size': shown_pixels.shape[:2], 'differing': expected.shape[0] * expected.shape[1], 'largest': None}
-    apart = np.abs(shown_pixels - expected).max(axis=2)
-    return {'size': expected.shape[:2], 'differing': int((apart != 0.0).sum()), 'largest': float(apart.max()),
-            'mean': float(expected[..., :3].mean())}
+        return {'size': shown_pixels.shape[:2], 'differing': expected.shape[0] * expected.shape[1], 'largest': None,
+                'apart': float('inf')}
+    off = np.abs(shown_pixels - expected).max(axis=2)
+    return {'size': expected.shape[:2], 'differing': int((off != 0.0).sum()), 'largest': float(off.max()),
+            'mean': float(expected[..., :3].mean()), 'apart': apart(shown_pixels, expected)}

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A 3D View in Rendered shading follows every edit, to the bits of an engine that has never seen the scene before.
 
-Light is Real-time's without the radiance cache, in which frames that follow each other keep a share of what was shown:
-all else depends on the seed alone. PANOPTES_LONG_TESTS walks through five hundred edits instead of forty.
+Bits are compared where light is Real-time's without the radiance cache: all of it depends on the seed alone. With the
+cache, and by paths, the means of blocks are. PANOPTES_LONG_TESTS walks through five hundred edits instead of forty, and
+makes all edits in any light.
 """
 
 import json
@@ -13,6 +14,7 @@ import subprocess
 import bpy
 import pytest
 
+from edit_list import ACTIONS, APART, SOME
 from edit_scene import FLOOR_SIDE, IMAGE_SIDE
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -43,21 +45,27 @@ def edit_in_window(out, *words, limit=300):
 @pytest.fixture(scope='module')
 def edited(native_module, tmp_path_factory):
     """What each edit of edit_steps.py has led to, and Blender's output."""
-    return edit_in_window(tmp_path_factory.mktemp('edits') / 'shown.json', 'edits')
+    return edit_in_window(tmp_path_factory.mktemp('edits') / 'shown.json', 'edits', 'direct')
 
 
 @pytest.fixture(scope='module')
 def walked(native_module, tmp_path_factory):
     """What a walk of edits by chance has led to, and Blender's output."""
-    return edit_in_window(tmp_path_factory.mktemp('walk') / 'shown.json', 'walk', str(STEPS), '1',
+    return edit_in_window(tmp_path_factory.mktemp('walk') / 'shown.json', 'walk', 'direct', str(STEPS), '1',
                           limit=3600 if LONG else 300)
 
 
-def names():
-    """Return the names of the steps, which edit_steps.py numbers."""
-    from edit_list import ACTIONS
+@pytest.fixture(scope='module', params=list(APART))
+def edited_in_light(request, native_module, tmp_path_factory):
+    """(light, what edits have led to, Blender's output) for each light that is compared by means."""
+    some = () if LONG else ('some',)
+    return (request.param, *edit_in_window(tmp_path_factory.mktemp(request.param) / 'shown.json', 'edits', request.param,
+                                           *some, limit=3600 if LONG else 300))
 
-    return [f'{number:02} {name}' for number, name in enumerate(ACTIONS)]
+
+def names(edits=ACTIONS):
+    """Return the names of the steps, which edit_steps.py numbers."""
+    return [f'{number:02} {name}' for number, name in enumerate(edits)]
 
 
 def assert_fresh(step):
@@ -80,6 +88,17 @@ def test_view_follows(edited, name):
     assert found[name]['changed'] or not found[name]['views']
 
 
+@pytest.mark.parametrize('name', [n for n in names(ACTIONS if LONG else SOME) if not n.split()[1].startswith('play')])
+def test_view_follows_in_any_light(edited_in_light, name):
+    light, found, output = edited_in_light
+    step = found.get(name)
+    assert step is not None, output
+    for view in step['views']:
+        assert view['apart'] < APART[light], view
+    # What was shown before would not have passed.
+    assert step['moved'] is None or step['moved'] > 2.0 * APART[light] or name.split()[1] in ('stop', 'leave_edit_mode')
+
+
 @pytest.mark.parametrize('name', [n for n in names() if not n.split()[1].startswith('play')])
 def test_edit_sends_no_more_than_it_touched(edited, name):
     found, _ = edited
@@ -97,8 +116,8 @@ def test_views_were_two_while_the_area_was_split(edited):
     assert len(found[name]['views']) == 2
 
 
-def test_nothing_was_raised(edited, walked):
-    for _, output in (edited, walked):
+def test_nothing_was_raised(edited, walked, edited_in_light):
+    for *_, output in (edited, walked, edited_in_light):
         assert 'Traceback' not in output and 'addon/panoptes/' not in output, output
 
 
