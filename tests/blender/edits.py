@@ -163,7 +163,8 @@ def shape(random):
 
 def add_thing(random):
     name = f'Added {next(_counter)}'
-    add_object(box_mesh(name, 0.5), name, location=(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(1.3, 1.7)))
+    place = random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(1.3, 1.7)
+    add_object(box_mesh(name, 0.5), name, location=place)
     thing(name).data.materials.append(bpy.data.materials['Green'])
 
 
@@ -176,7 +177,8 @@ def delete_thing(random):
 
 def duplicate(random):
     """Another object of the same mesh."""
-    add_object(bpy.data.meshes['Box'], f'Added {next(_counter)}', location=(random.uniform(-2, 2), -2.0, random.uniform(1.8, 2.2)))
+    place = random.uniform(-2, 2), random.uniform(-2.2, -1.8), random.uniform(1.8, 2.2)
+    add_object(bpy.data.meshes['Box'], f'Added {next(_counter)}', location=place)
 
 
 def hide(random):

@@ -10,7 +10,8 @@ from panoptes.viewport import _key
 
 # One pixel of a picture covers so many by so many of the region, so that pictures are soon done.
 PIXEL = 4
-# Pixels of a picture whose mean is compared where single ones depend on the order in which a scene is sent.
+# The least side of blocks of pixels whose means are compared where single ones depend on the order in which a scene is
+# sent.
 BLOCK = 20
 
 
@@ -71,14 +72,15 @@ def pixels_of(viewport):
 def apart(pixels, expected):
     """Return by how much the mean of any block differs, as a share of its light or a tenth of the picture's."""
     found, wanted = block_means(pixels), block_means(expected)
-    return float((np.abs(found - wanted) / np.maximum(np.abs(wanted), 0.1 * abs(wanted.mean()))).max())
+    return float((np.abs(found - wanted) / np.maximum(np.abs(wanted), 0.1 * np.abs(wanted).mean())).max())
 
 
 def block_means(pixels):
-    """Return the means of the blocks of a picture, RGB; those at the edges are smaller."""
+    """Return the means of the blocks of a picture, RGB: at least one, and all of about the same size."""
     height, width = pixels.shape[:2]
-    return np.array([pixels[y:y + BLOCK, x:x + BLOCK, :3].mean(axis=(0, 1))
-                     for y in range(0, height, BLOCK) for x in range(0, width, BLOCK)])
+    rows = np.array_split(pixels[..., :3], max(height // BLOCK, 1), axis=0)
+    return np.array([block.mean(axis=(0, 1)) for row in rows
+                     for block in np.array_split(row, max(width // BLOCK, 1), axis=1)])
 
 
 def difference(shown_pixels, request, space):
@@ -89,4 +91,4 @@ def difference(shown_pixels, request, space):
                 'apart': float('inf')}
     off = np.abs(shown_pixels - expected).max(axis=2)
     return {'size': expected.shape[:2], 'differing': int((off != 0.0).sum()), 'largest': float(off.max()),
-            'mean': float(expected[..., :3].mean()), 'apart': apart(shown_pixels, expected)}
+            'mean': float(np.abs(expected[..., :3]).mean()), 'apart': apart(shown_pixels, expected)}

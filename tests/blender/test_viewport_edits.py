@@ -95,8 +95,9 @@ def test_view_follows_in_any_light(edited_in_light, name):
     assert step is not None, output
     for view in step['views']:
         assert view['apart'] < APART[light], view
-    # What was shown before would not have passed.
-    assert step['moved'] is None or step['moved'] > 2.0 * APART[light] or name.split()[1] in ('stop', 'leave_edit_mode')
+    # What was shown before such an edit would not have passed.
+    if not LONG:
+        assert step['moved'] > 2.0 * APART[light]
 
 
 @pytest.mark.parametrize('name', [n for n in names() if not n.split()[1].startswith('play')])
