@@ -119,7 +119,7 @@ class Changeover:
 
 def picture(request, key, passing=False):
     """Return the picture to refine for a request of a 3D View; a `passing` one is soon replaced."""
-    staged = request['method'] == 'primitive' and 'debug_picture' not in request['settings']
+    staged = request['method'] != 'realtime' and 'debug_picture' not in request['settings']
     if not staged:
         return Refinement(request, key)
     return Refinement(quick(request), key) if passing else Changeover(request, key)

@@ -6,8 +6,9 @@ import textwrap
 
 import bpy
 
-from . import debug_pictures, indirect_panels, occlusion_panels, passes, requests, session
+from . import debug_pictures, fragment_tracing, indirect_panels, occlusion_panels, passes, requests, session
 from .engine_panel import EnginePanel
+
 
 class PANOPTES_PT_take_over(EnginePanel, bpy.types.Panel):
     """The way from Cycles' settings to ours."""
@@ -86,7 +87,7 @@ class PANOPTES_PT_debug(EnginePanel, bpy.types.Panel):
 
 
 def _traces_paths(context):
-    return requests.method(context.scene.panoptes) == 'primitive'
+    return requests.method(context.scene.panoptes) != 'realtime'
 
 
 def _draw_structure(column, settings):
@@ -155,7 +156,10 @@ class PANOPTES_PT_rays(_PathPanel, bpy.types.Panel):
         column = self._column()
         column.prop(settings, 'primary')
         column.prop(settings, 'shadows')
-        _draw_structure(column, settings)
+        if requests.method(context.scene.panoptes) == 'fragment':
+            fragment_tracing.draw(column, context.scene.panoptes.fragment)
+        else:
+            _draw_structure(column, settings)
 
 
 class PANOPTES_PT_shadows(EnginePanel, bpy.types.Panel):

@@ -58,8 +58,8 @@ BY_NAME = {entry.name: entry for entry in PASSES}
 
 
 def filled_by(method):
-    """Return the passes that a method ('realtime' or 'primitive') fills; others stay black."""
-    return [p for p in PASSES if method == 'primitive' or not p.paths]
+    """Return the passes that a method ('realtime', 'fragment' or 'primitive') fills; others stay black."""
+    return [p for p in PASSES if method != 'realtime' or not p.paths]
 
 
 def enabled(view_layer):

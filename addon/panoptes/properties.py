@@ -5,7 +5,7 @@ import bpy
 from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty,
                        StringProperty)
 
-from . import denoising, occlusion_properties, radiance_cache_properties, specular_rays
+from . import denoising, fragment_tracing, occlusion_properties, radiance_cache_properties, specular_rays
 
 
 class PanoptesRealtimeSettings(bpy.types.PropertyGroup):
@@ -129,8 +129,8 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
             ('auto', 'Automatic', 'Choose the method that suits the scene'),
             ('realtime', 'Real-time', 'Rasterised light with shadow maps: for navigating and '
                                       'animation previews'),
-            ('fragment', 'Fragment Tracing', 'Path tracing over rasterised layers. Does not work '
-                                             'yet: Real-time is used'),
+            ('fragment', 'Fragment Tracing', 'Path tracing over rasterised layers: light after any number of '
+                                             'bounces, as exact as their pixels'),
             ('primitive', 'Primitive Tracing', 'Path tracing with exact intersections: light after any '
                                                'number of bounces'),
         ),
@@ -196,6 +196,7 @@ class PanoptesSceneSettings(bpy.types.PropertyGroup):
     ambient_occlusion: PointerProperty(type=occlusion_properties.PanoptesOcclusionSettings)
     radiance_cache: PointerProperty(type=radiance_cache_properties.PanoptesRadianceCacheSettings)
     specular_rays: PointerProperty(type=specular_rays.PanoptesSpecularRaysSettings)
+    fragment: PointerProperty(type=fragment_tracing.PanoptesFragmentSettings)
     denoise: PointerProperty(type=denoising.PanoptesDenoiseSettings)
     last_stats: StringProperty(
         name='Last Statistics', description='Statistics of the last final render, as JSON',
@@ -213,8 +214,8 @@ class PanoptesViewLayerSettings(bpy.types.PropertyGroup):
 
 _CLASSES = (PanoptesRealtimeSettings, PanoptesPrimitiveSettings, occlusion_properties.PanoptesOcclusionSettings,
             radiance_cache_properties.PanoptesRadianceCacheSettings, specular_rays.PanoptesSpecularRaysSettings,
-            denoising.PanoptesDenoiseSettings, PanoptesSceneSettings, PanoptesViewLayerSettings,
-            radiance_cache_properties.PanoptesObjectSettings)
+            fragment_tracing.PanoptesFragmentSettings, denoising.PanoptesDenoiseSettings, PanoptesSceneSettings,
+            PanoptesViewLayerSettings, radiance_cache_properties.PanoptesObjectSettings)
 
 
 def register():

@@ -41,7 +41,7 @@ class Refinement:
 
     @property
     def method(self):
-        """How it is rendered: 'realtime' or 'primitive'."""
+        """How it is rendered: 'realtime', 'fragment' or 'primitive'."""
         return self._request['method']
 
     @property

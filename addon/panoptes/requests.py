@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from . import (cameras, debug_pictures, denoising, lens, occlusion, radiance_cache, specular_rays,
+from . import (cameras, debug_pictures, denoising, fragment_tracing, lens, occlusion, radiance_cache, specular_rays,
                view_shading)
 
 # Enough for an icon; the larger previews are as small as a stamp, too.
@@ -19,12 +19,14 @@ class BadRequest(RuntimeError):
 
 
 def method(settings, viewport=False):
-    """Return the method that is used for what `scene.panoptes` asks: 'realtime' or 'primitive'.
+    """Return the method that is used for what `scene.panoptes` asks: 'realtime', 'fragment' or 'primitive'.
 
     Left to choose, a 3D View refines Real-time's pictures by paths.
     """
-    paths = settings.method == 'primitive' or viewport and settings.method == 'auto'
-    return 'primitive' if paths and not debug_pictures.shows_technique(settings) else 'realtime'
+    wanted = settings.method
+    if wanted == 'auto':
+        wanted = 'primitive' if viewport else 'realtime'
+    return 'realtime' if debug_pictures.shows_technique(settings) else wanted
 
 
 def _path_settings(scene):
@@ -59,7 +61,7 @@ def _realtime_settings(depsgraph, warn):
 
 
 def _settings(depsgraph, used, viewport, warn):
-    """Return the settings that count for a method ('realtime' or 'primitive') in a 3D View or a final render."""
+    """Return the settings that count for a method in a 3D View or a final render."""
     scene, settings = depsgraph.scene, depsgraph.scene.panoptes
     found = {
         'shadow_resolution': settings.realtime.shadow_resolution,
@@ -67,9 +69,11 @@ def _settings(depsgraph, used, viewport, warn):
         'filter_penumbrae': settings.realtime.penumbrae == 'FILTERED',
         'film_transparent': scene.render.film_transparent,
     }
-    if used == 'primitive':
+    if used != 'realtime':
         found.update(_path_settings(scene))
         found.update(denoising.settings(scene, viewport))
+        if used == 'fragment':
+            found.update(fragment_tracing.settings(scene))
     else:
         found.update(_realtime_settings(depsgraph, warn))
     # 0 switches a limit off.
@@ -110,8 +114,6 @@ def build(depsgraph, size, samples, view, projection, passes, warn, camera=None,
                          'another camera.')
     scene = depsgraph.scene
     used = method(scene.panoptes, viewport) if by_paths else 'realtime'
-    if scene.panoptes.method == 'fragment':
-        warn('Fragment tracing does not work yet; Real-time is used instead.')
     settings = _settings(depsgraph, used, viewport, warn)
     if 'debug_picture' in settings:
         # It looks through the pixels' centres: another sample would be the same.
@@ -137,7 +139,7 @@ def _lens(camera, settings, used, warn):
     """Return the `lens` of a request; {} where everything is sharp."""
     if not lens.is_used(camera) or debug_pictures.shows_technique(settings):
         return {}
-    if used != 'primitive' or settings.primitive.primary == 'RASTERISED':
+    if used == 'realtime' or settings.primitive.primary == 'RASTERISED':
         warn(f"Camera '{camera.name}' has depth of field, which rasterised pictures do not show; everything is "
              'sharp instead. Choose Primitive Tracing and traced camera rays to see it.')
         return {}

@@ -3,7 +3,7 @@
 
 from .time_left import clock
 
-METHODS = {'realtime': 'Real-time', 'primitive': 'Paths'}
+METHODS = {'realtime': 'Real-time', 'fragment': 'Fragments', 'primitive': 'Paths'}
 
 # So many effects are named with their time.
 _MOST_TIMED = 4
@@ -17,7 +17,7 @@ _MAIN = ('radiance_cache', 'ambient_occlusion', 'specular_rays', 'indirect_light
 def lines(stats, method, samples, wanted, coarseness=1, seconds_left=None, letters=150):
     """Return the lines of text about a picture.
 
-    `stats` is that of its job, {} while there is none; `method` 'realtime' or 'primitive'; one pixel of the
+    `stats` is that of its job, {} while there is none; `method` one of METHODS; one pixel of the
     picture covers `coarseness` x `coarseness` of the view; `seconds_left` is None where unknown;
     about so many `letters` have room in a line.
     """

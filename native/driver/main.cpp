@@ -24,11 +24,11 @@ using panoptes::fail;
 constexpr const char* kUsage =
     "usage: panoptes_driver SCENE.scene [-o OUT.pfm] [--size WxH] [--samples N] [--stats OUT.json]\n"
     "                       [--repeat N] [--software] [--debug steps|tests|lists|tiles]\n"
-    "                       [--method realtime|primitive] [--bounces N] [--shadow-maps]\n"
+    "                       [--method realtime|fragment|primitive] [--bounces N] [--shadow-maps]\n"
     "                       [--raster-primary] [--pass NAME] [--occlusion KEY=VALUE]...\n"
     "                       [--cache KEY=VALUE]... [--specular-rays auto|off|on]\n"
     "                       [--denoise off|auto|edge_avoiding|oidn]\n"
-    "                       [--structure auto|orthographic|cube|lists|bvh|view] [--tiles N] [--buckets N]\n";
+    "                       [--structure auto|orthographic|cube|lists|bvh|view|fragments] [--tiles N] [--buckets N]\n";
 
 struct Arguments {
   std::string scene, output, stats;
@@ -85,10 +85,7 @@ Arguments parse(const std::vector<std::string>& words) {
     else if (word == "--bounces") a.bounces = whole(word, value(), 0);
     else if (word == "--method") {
       const std::string& name = value();
-      if (name != "realtime" && name != "primitive")
-        fail("--method takes realtime or primitive, not '{}': see --help", name);
-      a.method = name == "primitive" ? panoptes::engine::Method::kPrimitive
-                                     : panoptes::engine::Method::kRealtime;
+      a.method = panoptes::driver::named<panoptes::engine::Method>(panoptes::engine::kMethodNames, name);
     } else if (word == "--software") a.software = true;
     else if (word == "--debug") {
       a.debug = panoptes::ray_picture::find_kind(value());

@@ -33,7 +33,7 @@ constexpr double kLiveShare = 3;
 constexpr uint32_t kErrorInterval = 4;
 
 bool traces_paths(const RenderRequest& request) {
-  return request.method == Method::kPrimitive &&
+  return request.method != Method::kRealtime &&
          request.debug_picture == ray_picture::Kind::kNone;
 }
 
@@ -284,7 +284,9 @@ void RenderThread::render_frame(Job& job, SharedScene& shared) {
   if (traces) {
     job.set_status("building the structure for rays", 0);
     const int64_t pixels = int64_t(request.camera.width) * request.camera.height;
-    traced_.build(request.structure, request.camera, paths ? pixels * wanted * kRaysOfPath : pixels, programs_,
+    StructureSettings structure = request.structure;
+    if (request.method == Method::kFragment) structure.structure = Structure::kFragments;
+    traced_.build(structure, request.camera, paths ? pixels * wanted * kRaysOfPath : pixels, programs_,
                   timer_);
   }
   for (const std::string& warning : gpu_scene_.warnings()) warnings.push_back(warning);

@@ -12,9 +12,11 @@
 #include "ray_picture/kind.h"
 #include "specular_rays/settings.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace panoptes::engine {
@@ -22,7 +24,10 @@ namespace panoptes::engine {
 enum class Method {
   kRealtime,   // shadow maps and rasterised light
   kPrimitive,  // path tracing over exact intersections
+  kFragment,   // path tracing over layers of pixels (Structure::kFragments)
 };
+
+constexpr std::array<std::string_view, 3> kMethodNames{"realtime", "primitive", "fragment"};
 
 struct RenderRequest {
   gpu_scene::Camera camera;

@@ -1,6 +1,8 @@
 // How rays find the triangles that they meet, as an artist may choose it.
 #pragma once
 
+#include "fragment_tracer/settings.h"
+
 #include <array>
 #include <string_view>
 
@@ -13,10 +15,11 @@ enum class Structure {
   kLists,         // the same with the thesis' linked lists
   kBvh,           // a hierarchy of boxes, built on the host
   kView,          // the camera's perspective view alone: what it does not see, no ray meets
+  kFragments,     // layers of pixels in views about the camera, in place of triangles: an approximation
 };
 
-constexpr std::array<std::string_view, 6> kStructureNames{"auto", "orthographic", "cube", "lists",
-                                                          "bvh",  "view"};
+constexpr std::array<std::string_view, 7> kStructureNames{"auto", "orthographic", "cube", "lists",
+                                                          "bvh",  "view",         "fragments"};
 
 // The structure of that name; Structure(-1) when there is none.
 constexpr Structure find_structure(std::string_view name) {
@@ -30,6 +33,7 @@ struct StructureSettings {
   int tiles = 0;    // a side of a view, 1 .. 1024; 0: as many as the triangles deserve
   int buckets = 0;  // over depth: of a tile with kLists, else for each triangle of a tile, 1 .. 255;
                     // 0: the structure's own
+  fragment_tracer::Settings fragments;  // of kFragments
 
   // Throws Error with a sentence when a value is out of range.
   void check() const;

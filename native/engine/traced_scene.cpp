@@ -30,9 +30,10 @@ void TracedScene::build(const StructureSettings& settings, const gpu_scene::Came
   StructureSettings wanted = settings;
   if (wanted.structure == Structure::kAuto) wanted.structure = choose(rays);
   // A view's structure holds for one camera, and for one origin of the list.
-  const bool moved = wanted.structure == Structure::kView &&
-                     (!built_ || made_for_.world_to_camera != camera.world_to_camera ||
-                      made_for_.projection != camera.projection);
+  const bool views = wanted.structure == Structure::kView || wanted.structure == Structure::kFragments;
+  const bool moved = views && (!built_ || made_for_.world_to_camera != camera.world_to_camera ||
+                               made_for_.projection != camera.projection || made_for_.width != camera.width ||
+                               made_for_.height != camera.height);
   const bool fresh = !tracer_ || made_ != wanted || moved;
   if (fresh) {
     tracer_.reset();  // before the other takes its memory

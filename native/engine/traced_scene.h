@@ -28,7 +28,8 @@ class TracedScene {
   void update(const scene::Scene& scene, const gpu_scene::GpuScene& gpu, gl::ProgramCache& programs,
               gl::PassTimer& timer);
   // Builds the structure that `settings` ask for, if it does not hold the list as it is now. kAuto
-  // takes the one that will have cost least after about `rays` rays; kView is made for `camera`.
+  // takes the one that will have cost least after about `rays` rays; kView and kFragments are made for
+  // `camera`.
   void build(const StructureSettings& settings, const gpu_scene::Camera& camera, int64_t rays,
              gl::ProgramCache& programs, gl::PassTimer& timer);
   // What so many rays took, for later choices. The first after another structure was made do not

@@ -2,11 +2,13 @@
 
 #include "base/error.h"
 #include "bvh_tracer/bvh_tracer.h"
+#include "fragment_tracer/fragment_tracer.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace panoptes::engine {
@@ -22,6 +24,7 @@ void StructureSettings::check() const {
   if (buckets < 0 || buckets > 255)
     fail("the structure for rays was asked for {} buckets: choose 1 to 255, or 0 for its own number",
          buckets);
+  fragments.check();
 }
 
 namespace {
@@ -40,6 +43,22 @@ primitive_tracer::SingleView single_view(const gpu_scene::Camera& camera, const 
   view.half_extent = {float((1.0 + std::abs(p[2][0])) / p[0][0]),
                       float((1.0 + std::abs(p[2][1])) / p[1][1])};
   return view;
+}
+
+// Fragments are those of the camera's own pixels, and of a cube about its eye.
+std::unique_ptr<tracing::Tracer> fragment_tracer_of(const fragment_tracer::Settings& settings,
+                                                    const gpu_scene::Camera& camera, const glm::dvec3& origin) {
+  // An orthographic camera has no eye: the cube stands in the middle of the scene, where the list has its origin.
+  if (!camera.perspective())
+    return std::make_unique<fragment_tracer::FragmentTracer>(settings, glm::vec3(0), std::nullopt);
+  const primitive_tracer::SingleView view = single_view(camera, origin);
+  // As fine as the picture, and no coarser than the cube.
+  const int least = std::max(camera.width, int(std::lround(settings.side * view.half_extent.x)));
+  const int width = settings.camera_width > 0 ? settings.camera_width : std::min(least, 16384);
+  const int height = std::clamp(int(std::lround(width * view.half_extent.y / view.half_extent.x)), 1, 16384);
+  return std::make_unique<fragment_tracer::FragmentTracer>(
+      settings, view.eye,
+      fragment_tracer::CameraView{view.right, view.up, view.forward, view.half_extent, {width, height}});
 }
 
 }  // namespace
@@ -68,6 +87,7 @@ std::unique_ptr<tracing::Tracer> make_tracer(const StructureSettings& settings,
       return std::make_unique<primitive_tracer::CubeTracer>(s);
     }
     case Structure::kBvh: return std::make_unique<bvh_tracer::BvhTracer>(device);
+    case Structure::kFragments: return fragment_tracer_of(settings.fragments, camera, origin);
     case Structure::kAuto: break;
   }
   fail("no structure for rays was chosen: please report it");

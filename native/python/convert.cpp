@@ -145,9 +145,9 @@ engine::RenderRequest request(const py::dict& dict) {
   if (r.shown_pass == film::Pass::kCount)
     fail("there is no pass '{}' to be shown: see the README for those that there are", shown);
   const auto method = get<std::string>(dict, "method", "realtime");
-  if (method != "realtime" && method != "primitive")
-    fail("method '{}' is not part of this version: choose 'realtime' or 'primitive'", method);
-  r.method = method == "primitive" ? engine::Method::kPrimitive : engine::Method::kRealtime;
+  r.method = find_choice<engine::Method>(engine::kMethodNames, method);
+  if (!known_choice(engine::kMethodNames, r.method))
+    fail("there is no method '{}': choose one of {}", method, fmt::join(engine::kMethodNames, ", "));
   r.camera.lens = lens(get(dict, "lens", py::dict()));
   r.filter_width = get(dict, "filter_width", r.filter_width);
   r.exposure = get(dict, "exposure", r.exposure);
@@ -163,7 +163,7 @@ engine::RenderRequest request(const py::dict& dict) {
       "glossy_bounces",       "transmission_bounces", "transparent_bounces", "clamp_direct",
       "clamp_indirect",       "filter_glossy",       "shadow_maps",      "raster_primary",
       "ao_distance",          "occlusion",           "cache",            "specular_rays",
-      "denoise"};
+      "denoise",              "fragments"};
   for (const auto& item : settings)
     if (!known.count(item.first.cast<std::string>()))
       fail("there is no setting '{}': please report it", item.first.cast<std::string>());
@@ -185,6 +185,7 @@ engine::RenderRequest request(const py::dict& dict) {
          fmt::join(engine::kStructureNames, ", "));
   r.structure.tiles = get(settings, "tiles", 0);
   r.structure.buckets = get(settings, "buckets", 0);
+  r.structure.fragments = fragment_settings(get(settings, "fragments", py::dict()));
   r.paths = path_settings(settings);
   const auto denoiser = get<std::string>(settings, "denoise", "off");
   r.denoise.denoiser = find_choice<denoise::Denoiser>(denoise::kDenoiserNames, denoiser);

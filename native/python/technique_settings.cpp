@@ -79,4 +79,25 @@ specular_rays::Settings specular_settings(const py::dict& dict) {
   return s;
 }
 
+fragment_tracer::Settings fragment_settings(const py::dict& dict) {
+  namespace ft = fragment_tracer;
+  ft::Settings s;
+  Members members(dict, "fragment tracing");
+  members.read("views", s.views, ft::kViewsNames);
+  members.read("side", s.side);
+  members.read("camera_width", s.camera_width);
+  members.read("storage", s.storage, ft::kStorageNames);
+  members.read("buckets", s.buckets);
+  members.read("layers", s.layers);
+  members.read("decoupled", s.decoupled);
+  members.read("skipping", s.skipping);
+  members.read("binary_search", s.binary_search);
+  members.read("walk", s.walk, ft::kWalkNames);
+  members.read("steps", s.steps);
+  members.read("thickness", s.thickness);
+  members.read("by_plane", s.by_plane);
+  members.check_all_known();
+  return s;
+}
+
 }  // namespace panoptes::python

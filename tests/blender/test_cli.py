@@ -176,9 +176,12 @@ class TestRenders:
         assert lines == []
         assert 1 <= json.loads((tmp_path / 'out.json').read_text())['samples'] <= 3
 
-    def test_method_that_does_not_work_yet(self, make, tmp_path):
-        status, lines, _ = run('render', make(), '-o', tmp_path / 'out.png', '--method', 'fragment')
-        assert status == 0 and len(lines) == 1 and 'Real-time is used instead' in lines[0]
+    def test_fragment_tracing(self, make, tmp_path):
+        status, lines, _ = run('render', make(), '-o', tmp_path / 'out.png', '--method', 'fragment', '--set',
+                               'fragment.side=64', '--set', 'fragment.storage=SB', '--stats', tmp_path / 'out.json')
+        assert status == 0 and lines == []
+        passes = [entry['name'] for entry in json.loads((tmp_path / 'out.json').read_text())['passes']]
+        assert 'structure_links' in passes and 'path_rays' in passes
 
     def test_missing_texture(self, scene, make, tmp_path):
         material = bpy.data.materials.new('Painted')

@@ -118,10 +118,11 @@ class TestWithRecorder:
         assert stats['size'] == [32, 24] and stats['sync_ms'] > 0 and stats['total_ms'] > 0
         assert session.last_stats == stats and not session.last_error
 
-    def test_method_that_does_not_work_yet(self, scene, recorder):
-        scene.panoptes.method = 'fragment'
+    def test_fragment_tracing_is_asked_for_with_its_settings(self, scene, recorder):
+        scene.panoptes.method, scene.panoptes.fragment.storage = 'fragment', 'LLB'
         bpy.ops.render.render()
-        assert len([w for w in session.last_stats['warnings'] if 'Real-time is used' in w]) == 1
+        request = recorder.arguments('render')[0][0]
+        assert request['method'] == 'fragment' and request['settings']['fragments']['storage'] == 'LLB'
 
     def test_cancelled_renders_keep_what_there_is(self, scene, recorder, monkeypatch, tmp_path):
         """Passes that the job has not come to stay black."""

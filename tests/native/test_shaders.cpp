@@ -8,6 +8,7 @@
 #include "path_tracer/programs.h"
 #include "path_tracer/raster_primary.h"
 #include "path_tracer/world_map.h"
+#include "fragment_tracer/fragment_tracer.h"
 #include "primitive_tracer/cube_tracer.h"
 #include "primitive_tracer/orthographic_tracer.h"
 #include "radiance_cache/geometry_volume.h"
@@ -358,6 +359,21 @@ class Shaders : public ::testing::Test {
       for (gl::ProgramSource& source : primitive_tracer::cube_build_programs(settings))
         add(std::move(source));
       const primitive_tracer::CubeTracer tracer(settings);
+      for (bool any_hit : {false, true})
+        for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
+          add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));
+    }
+
+    for (int bits = 0; bits < 5 * 12; ++bits) {
+      fragment_tracer::Settings settings;
+      settings.storage = fragment_tracer::Storage(bits % 5);
+      settings.walk = fragment_tracer::Walk(bits / 5 % 3);
+      settings.decoupled = settings.by_plane = bits / 15 % 2;
+      settings.skipping = settings.binary_search = bits / 30 % 2;
+      const bool camera = bits % 2;
+      for (gl::ProgramSource& source : fragment_tracer::build_programs(settings, camera ? 7 : 6, camera))
+        add(std::move(source));
+      const fragment_tracer::FragmentTracer tracer(settings, glm::vec3(0), fragment_tracer::CameraView{});
       for (bool any_hit : {false, true})
         for (auto from : {tracing::RaySource::kAll, tracing::RaySource::kResumed})
           add(tracing::trace_program(tracer, {.any_hit = any_hit, .count_work = any_hit}, from));

@@ -1,0 +1,52 @@
+// The views whose fragments rays are traced through, and what the build counts.
+#pragma once
+
+#include "base/cpp_glsl.h"
+
+SHARED_BEGIN
+
+// Positions are relative to FragmentViews.centre, the eye of all views. Dot products with x and y over that with z are
+// pixels; that with z is the depth along the view's axis, metres.
+struct FragmentView {
+  vec4 x;      // w: width of a pixel at a depth of one metre
+  vec4 y;
+  vec4 z;
+  ivec4 size;  // x, y: pixels; z: number of its first pixel among those of all views; w: its levels above the pixels
+};
+SHARED_ASSERT_SIZE(FragmentView, 64)
+
+const uint MOST_VIEWS = 7u;
+const uint MOST_LEVELS = 16u;  // of a view's pyramid of depth bounds
+
+struct FragmentViews {
+  FragmentView views[7];
+  vec4 centre;  // xyz: relative to the list's origin
+  vec4 low;     // xyz: corner of the scene's box, relative to the list's origin
+  vec4 high;    // xyz: the opposite corner
+  ivec4 counts; // x: views; y: 1 where the first of them is the camera's; z: buckets of a pixel; w: steps across a view
+  vec4 limits;  // x: thickness, as a share of the depth
+  ivec4 level_first[28];  // of view * MOST_LEVELS + level, four to an entry: its first cell
+};
+SHARED_ASSERT_SIZE(FragmentViews, 976)
+
+struct FragmentCounters {
+  uint fragments;  // of all views, those that found no room among them
+  uint placed;     // fragments that have a place in the sorted runs
+  uint longest;    // fragments of the longest list
+  uint used;       // lists that hold any
+};
+SHARED_ASSERT_SIZE(FragmentCounters, 16)
+
+// While it is built: where a fragment belongs.
+struct FragmentEntry {
+  float depth;
+  uint list;       // pixel * buckets + bucket
+  uint rank;       // in the order of arrival
+  uint primitive;
+};
+SHARED_ASSERT_SIZE(FragmentEntry, 16)
+
+// No node, no primitive.
+const uint NO_FRAGMENT = 0xffffffffu;
+
+SHARED_END
