@@ -52,12 +52,23 @@ TEST_F(FragmentPaths, GiveTheLightOfExactOnes) {
   const auto exact = finished(request(engine::Method::kPrimitive)), found = finished(fragments());
   for (Pass pass : {Pass::kCombined, Pass::kDiffInd})
     EXPECT_NEAR(light(*found, pass) / light(*exact, pass), 1, 0.02) << film::info(pass).name;
-  // The share of rays that leave the room: one of a hundred slips through.
   constexpr double kValues = 3 * 64 * 48;
-  EXPECT_NEAR(light(*found, Pass::kAo) / kValues, light(*exact, Pass::kAo) / kValues, 0.01);
   // Most paths are the same, so that their noise is.
   EXPECT_LT(apart(found->read(Pass::kCombined), exact->read(Pass::kCombined)),
             0.1 * light(*exact, Pass::kCombined) / kValues);
+}
+
+TEST_F(FragmentPaths, LetOneRayOfAHundredThroughWhereWallsMeet) {
+  // The AO pass is the share of rays that leave the room. Where walls meet within a pixel, it shows but one of them, and
+  // rays slip through the other; how many depends on how the edges lie to the pixels, too.
+  const double exact = light(*finished(request(engine::Method::kPrimitive)), Pass::kAo);
+  for (int side : {128, 512}) {
+    Settings settings;
+    settings.side = side;
+    const double lost = (light(*finished(fragments(settings)), Pass::kAo) - exact) / (3 * 64 * 48);
+    EXPECT_GT(lost, 0);
+    EXPECT_LT(lost, 0.01) << side;
+  }
 }
 
 TEST_F(FragmentPaths, MoreViewsAndLayersLoseLess) {
@@ -69,10 +80,10 @@ TEST_F(FragmentPaths, MoreViewsAndLayersLoseLess) {
     settings.storage = Storage::kDoubleList;
     return light(*finished(fragments(settings)), Pass::kDiffInd) / exact;
   };
-  const double least = share(Views::kCamera, 1), deep = share(Views::kCamera, 0), wide = share(Views::kCubeAndCamera, 1),
-               all = share(Views::kCubeAndCamera, 0);
-  fmt::print("bounced light: one view and layer {:.3f}, one view {:.3f}, one layer {:.3f}, all {:.3f}\n", least, deep, wide,
-             all);
+  const double least = share(Views::kCamera, 1), deep = share(Views::kCamera, 0);
+  const double wide = share(Views::kCubeAndCamera, 1), all = share(Views::kCubeAndCamera, 0);
+  fmt::print("bounced light: one view and layer {:.3f}, one view {:.3f}, one layer {:.3f}, all {:.3f}\n", least,
+             deep, wide, all);
   EXPECT_NEAR(all, 1, 0.02);
   EXPECT_GT(std::abs(wide - 1), std::abs(all - 1));
   EXPECT_GT(std::abs(deep - 1), std::abs(all - 1));
