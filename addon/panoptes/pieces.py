@@ -21,7 +21,7 @@ def merge_key(scene, request):
     key = {name: value for name, value in request.items()
            if name not in ('samples', 'live', 'pieces', 'settings', 'view', 'projection')}
     key.update(request['settings'])
-    for technique in ('occlusion', 'cache', 'specular_rays'):
+    for technique in ('occlusion', 'cache', 'specular_rays', 'fragments'):
         for name, value in key.pop(technique, {}).items():
             key[f'{technique}_{name}'] = value
     key.pop('time_budget', None)

@@ -39,7 +39,8 @@ gl::ProgramSource pass(const Settings& s, int views, bool has_camera, const char
 gl::ProgramSource raster(const Settings& s, int views, bool has_camera, bool store) {
   gl::ProgramSource source;
   source.name = "fragments: raster";
-  source.stages = {{GL_VERTEX_SHADER, "fragment_tracer/raster.vert"}, {GL_FRAGMENT_SHADER, "fragment_tracer/raster.frag"}};
+  source.stages = {{GL_VERTEX_SHADER, "fragment_tracer/raster.vert"},
+                   {GL_FRAGMENT_SHADER, "fragment_tracer/raster.frag"}};
   source.defines = defines(s, views, has_camera);
   source.defines.push_back(fmt::format("STORE {}", int(store)));
   return source;
@@ -68,8 +69,8 @@ std::vector<gl::ProgramSource> build_programs(const Settings& settings, int view
   return sources;
 }
 
-FragmentTracer::FragmentTracer(const Settings& settings, const glm::vec3& centre, const std::optional<CameraView>& camera,
-                               uint32_t room)
+FragmentTracer::FragmentTracer(const Settings& settings, const glm::vec3& centre,
+                               const std::optional<CameraView>& camera, uint32_t room)
     : settings_(settings), room_(room) {
   settings.check();
   place(centre, camera);
@@ -105,7 +106,7 @@ void FragmentTracer::place(const glm::vec3& centre, const std::optional<CameraVi
   pixels_ = uint32_t(pixels);
   cells_ = uint32_t(cells);
   block_.centre = glm::vec4(centre, 0);
-  block_.counts = {views_, int(has_camera_), settings_.buckets, settings_.steps};
+  block_.walk = {settings_.steps, 0, 0, 0};
   block_.limits = {settings_.thickness, 0, 0, 0};
 }
 

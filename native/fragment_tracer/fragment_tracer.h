@@ -45,7 +45,6 @@ class FragmentTracer : public tracing::Tracer {
   // Of the last build.
   uint32_t fragments() const { return counters_.fragments; }
   uint32_t longest_list() const { return counters_.longest; }
-  uint32_t used_lists() const { return counters_.used; }
   // Bytes as Table 6.2 divides them.
   struct Bytes {
     int64_t pixels = 0;     // pixel_bytes() of each

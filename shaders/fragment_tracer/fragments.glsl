@@ -143,6 +143,7 @@ Data fetch_data(uint node) {
   return Data(texelFetch(data, word).x,
               uintBitsToFloat(uvec2(texelFetch(data, word + 1).x, texelFetch(data, word + 2).x)));
 #else
-  return Data(node_word(node, DATA_AT), uintBitsToFloat(uvec2(node_word(node, DATA_AT + 1), node_word(node, DATA_AT + 2))));
+  return Data(node_word(node, DATA_AT),
+              uintBitsToFloat(uvec2(node_word(node, DATA_AT + 1), node_word(node, DATA_AT + 2))));
 #endif
 }

@@ -3,6 +3,7 @@
 // The camera's view has the finer pixels and goes first; the faces of the cube see what is left. Where a ray goes over
 // from one view to another it goes on at the same place of the ray, so that nothing is passed over or met twice.
 #include "fragment_tracer/views.glsl"
+#include "tracing/spans.glsl"
 
 struct Traversal {
   // The ray from where it enters the scene's box: t = t_start + s.
@@ -26,18 +27,12 @@ struct Traversal {
   uint entry;              // the next fragment
   int left;                // of an array: fragments behind it
   int bucket, last_bucket;
+  float jitter;            // 0..1, of fixed steps
 };
 
 const float NEVER = 1e38;
 // Views reach so much further than their sides, so that a ray along an edge of the cube falls between no two.
 const float WIDENED = 1.00001;
-
-void clip(float offset, float slope, inout vec2 span) {
-  float s = -offset / slope;
-  if (slope > 0.0) span.x = max(span.x, s);
-  else if (slope < 0.0) span.y = min(span.y, s);
-  else if (offset < 0.0) span.y = -1.0;
-}
 
 // The interval of s in which a view sees the ray.
 vec2 span_in(vec3 origin, vec3 direction, float s_end, int view) {
@@ -53,21 +48,13 @@ vec2 span_in(vec3 origin, vec3 direction, float s_end, int view) {
 
 Traversal traversal_begin(Ray ray) {
   Traversal at;
-  // The part of the ray in the scene's box.
-  vec3 to_low = (block.low.xyz - ray.origin) / ray.direction, to_high = (block.high.xyz - ray.origin) / ray.direction;
-  bvec3 still = equal(ray.direction, vec3(0.0));
-  vec3 enter = mix(min(to_low, to_high), vec3(ray.t_min), still);
-  vec3 leave = mix(max(to_low, to_high), vec3(ray.t_max), still);
-  bvec3 beside = notEqual(clamp(ray.origin, block.low.xyz, block.high.xyz), ray.origin);
-  float t0 = max(ray.t_min, max(enter.x, max(enter.y, enter.z)));
-  float t1 = min(ray.t_max, min(leave.x, min(leave.y, leave.z)));
-  bool meets = t0 <= t1 && !(still.x && beside.x) && !(still.y && beside.y) && !(still.z && beside.z);
-
-  at.t_start = t0;
+  vec2 part;
+  bool meets = part_in_box(ray, block.low.xyz, block.high.xyz, part) && part.x <= part.y;
+  at.t_start = part.x;
   // In double precision, so that a ray from far away loses nothing on its way to the box.
-  at.origin = vec3(dvec3(ray.origin) + double(t0) * dvec3(ray.direction) - dvec3(block.centre.xyz));
+  at.origin = vec3(dvec3(ray.origin) + double(part.x) * dvec3(ray.direction) - dvec3(block.centre.xyz));
   at.direction = ray.direction;
-  at.s_end = meets ? t1 - t0 : -1.0;
+  at.s_end = meets ? part.y - part.x : -1.0;
   for (int view = 0; view < VIEWS; ++view)
     at.spans[view] = meets ? span_in(at.origin, at.direction, at.s_end, view) : vec2(0.0, -1.0);
   at.view = 0;
@@ -79,6 +66,7 @@ Traversal traversal_begin(Ray ray) {
   at.s = at.view_end = at.view_from = at.view_last = at.cell_start = at.cell_end = 0.0;
   at.pixel = 0u;
   at.entry = NO_FRAGMENT;
+  at.jitter = float(ray.seed >> 8u) / 16777216.0;
   return at;
 }
 

@@ -58,7 +58,8 @@ void meet(Ray ray, Traversal at, float depth, inout TracedHit hit) {
   float beside = length(offset - b1 * edge1 - b2 * edge2);
   float margin = BEYOND * (at.cell_end - at.cell_start), s = t - at.t_start;
   bool near = s >= at.cell_start - margin && s <= at.cell_end + margin && beside <= BESIDE * width;
-  if (near && facing != 0.0 && is_there(ray, corners.flags)) keep_closer(ray, t, Data(found.primitive, vec2(b1, b2)), hit);
+  found.barycentrics = vec2(b1, b2);
+  if (near && facing != 0.0 && is_there(ray, corners.flags)) keep_closer(ray, t, found, hit);
 #else
   uint flags = floatBitsToUint(texelFetch(triangles, int(found.primitive) * 3 + 2).w);
   float s = at.slope.z != 0.0 ? (depth - at.start.z) / at.slope.z : at.cell_start;
@@ -87,6 +88,7 @@ void step_list(Ray ray, inout Traversal at, inout TracedHit hit) {
   // The first that is met from the ray's side is the one (Figure 6.5).
   if (hit.primitive != NO_PRIMITIVE && (LINKS != 1 || at.slope.z >= 0.0)) at.listing = false;
 #endif
+  at.alive = at.alive && at.s <= at.view_end;
 }
 
 #if TRAVERSAL == STEPS
@@ -97,20 +99,20 @@ float s_of(Traversal at, float from, float to, float part) {
 }
 
 // One of a fixed number of pixels, which stands for its share of the way.
-void step_cell(Ray ray, inout Traversal at) {
+void step_cell(inout Traversal at) {
   COUNT_STEP
-  float parts = float(block.counts.w), jitter = float(ray.seed >> 8u) / 16777216.0;
+  float parts = float(block.walk.x);
   at.cell_start = s_of(at, at.view_from, at.view_last, float(at.level) / parts);
   at.cell_end = s_of(at, at.view_from, at.view_last, float(at.level + 1) / parts);
-  at.cell = cell_at(at, s_of(at, at.view_from, at.view_last, (float(at.level) + jitter) / parts), 0);
+  at.cell = cell_at(at, s_of(at, at.view_from, at.view_last, (float(at.level) + at.jitter) / parts), 0);
   ++at.level;
   begin_list(at, pixel_number(at.view, at.cell));
-  at.alive = at.level < block.counts.w && at.cell_end < at.view_end;
+  at.alive = at.level < block.walk.x && at.cell_end < at.view_end;
   at.s = at.alive ? at.cell_end : at.view_last;
 }
 #else
 // One pixel, or with the hierarchy one cell of the pyramid.
-void step_cell(Ray ray, inout Traversal at) {
+void step_cell(inout Traversal at) {
   COUNT_STEP
   float size = float(1 << at.level);
   vec2 border = (vec2(at.cell) + at.far_side) * size;
@@ -152,29 +154,7 @@ void step_cell(Ray ray, inout Traversal at) {
 }
 #endif
 
-bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
-  bool left = true;
-  while (left && budget > 0) {
-    // A loop of no or one turn, since software skips that where no ray at hand needs it.
-    for (int turn = at.alive || at.listing ? 1 : 0; turn < 1; ++turn) {
-      left = next_view(at);
-      --budget;
-    }
-    while (at.alive && !at.listing && budget > 0) {
-      step_cell(ray, at);
-      --budget;
-    }
-    while (at.listing && budget > 0) {
-      step_list(ray, at, hit);
-      --budget;
-#if ANY_HIT
-      if (hit.primitive != NO_PRIMITIVE) return true;
-#endif
-    }
-    at.alive = at.alive && at.s <= at.view_end;
-  }
-  return !left;
-}
+#include "tracing/walk_views.glsl"
 
 void traversal_save(Traversal at, uint word) {
   put_word(word, uint(at.view) | (at.alive ? 8u : 0u) | (at.listing ? 16u : 0u) | uint(at.bucket) << 8u |

@@ -19,13 +19,13 @@ const uint MOST_VIEWS = 7u;
 const uint MOST_LEVELS = 16u;  // of a view's pyramid of depth bounds
 
 struct FragmentViews {
-  FragmentView views[7];
+  FragmentView views[MOST_VIEWS];
   vec4 centre;  // xyz: relative to the list's origin
   vec4 low;     // xyz: corner of the scene's box, relative to the list's origin
   vec4 high;    // xyz: the opposite corner
-  ivec4 counts; // x: views; y: 1 where the first of them is the camera's; z: buckets of a pixel; w: steps across a view
+  ivec4 walk;   // x: with fixed steps their number across a view
   vec4 limits;  // x: thickness, as a share of the depth
-  ivec4 level_first[28];  // of view * MOST_LEVELS + level, four to an entry: its first cell
+  ivec4 level_first[MOST_VIEWS * MOST_LEVELS / 4u];  // of view * MOST_LEVELS + level, four to an entry: its first cell
 };
 SHARED_ASSERT_SIZE(FragmentViews, 976)
 
@@ -33,7 +33,7 @@ struct FragmentCounters {
   uint fragments;  // of all views, those that found no room among them
   uint placed;     // fragments that have a place in the sorted runs
   uint longest;    // fragments of the longest list
-  uint used;       // lists that hold any
+  uint unused;
 };
 SHARED_ASSERT_SIZE(FragmentCounters, 16)
 

@@ -4,6 +4,7 @@
 // Each view is an interval of the ray, in a frustum a little wider than the view, so that a ray
 // along an edge of the cube falls between no two.
 #include "primitive_tracer/cube.glsl"
+#include "tracing/spans.glsl"
 
 layout(binding = 1) uniform usamplerBuffer nodes;    // least and greatest depth; lists
 layout(binding = 2) uniform usamplerBuffer offsets;  // of buckets in ids; first links of buckets
@@ -46,13 +47,6 @@ float end_of(float t, Traversal at) {
   return t - at.t_start + 2e-6 * max(abs(t), abs(at.t_start)) + at.slack;
 }
 
-void clip(float offset, float slope, inout vec2 span) {
-  float s = -offset / slope;
-  if (slope > 0.0) span.x = max(span.x, s);
-  else if (slope < 0.0) span.y = min(span.y, s);
-  else if (offset < 0.0) span.y = -1.0;
-}
-
 // The interval of s in a view; its end lies before its start where there is none.
 vec2 span_in(vec3 origin, vec3 direction, float s_end, int view) {
   vec3 o = to_view(origin, view) * cube.centre.w, d = to_view(direction, view) * cube.centre.w;
@@ -68,21 +62,12 @@ vec2 span_in(vec3 origin, vec3 direction, float s_end, int view) {
 
 Traversal traversal_begin(Ray ray) {
   Traversal at;
-  // The part of the ray in the scene's box.
-  vec3 to_low = (cube.low.xyz - ray.origin) / ray.direction;
-  vec3 to_high = (cube.high.xyz - ray.origin) / ray.direction;
-  bvec3 still = equal(ray.direction, vec3(0.0));
-  vec3 enter = mix(min(to_low, to_high), vec3(ray.t_min), still);
-  vec3 leave = mix(max(to_low, to_high), vec3(ray.t_max), still);
-  bvec3 beside = notEqual(clamp(ray.origin, cube.low.xyz, cube.high.xyz), ray.origin);
-  float t0 = max(ray.t_min, max(enter.x, max(enter.y, enter.z)));
-  float t1 = min(ray.t_max, min(leave.x, min(leave.y, leave.z)));
+  vec2 part;
+  bool meets = part_in_box(ray, cube.low.xyz, cube.high.xyz, part);
   vec3 size = abs(ray.direction);
   at.slack = 4.0 * POSITION_ERROR / (cube.centre.w * max(size.x, max(size.y, size.z)));
-  t0 -= 2e-6 * abs(t0) + at.slack;
-  t1 += 2e-6 * abs(t1) + at.slack;
-  bool meets = t0 <= t1 && !(still.x && beside.x) && !(still.y && beside.y) &&
-               !(still.z && beside.z);
+  float t0 = part.x - 2e-6 * abs(part.x) - at.slack, t1 = part.y + 2e-6 * abs(part.y) + at.slack;
+  meets = meets && t0 <= t1;
 
   at.t_start = t0;
   // In double precision, so that a ray from far away loses nothing on its way to the box.

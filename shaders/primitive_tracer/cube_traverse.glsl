@@ -143,28 +143,7 @@ void step_list(Ray ray, inout Traversal at, inout TracedHit hit) {
   at.alive = at.alive && at.s <= at.s_end;
 }
 
-bool traverse(Ray ray, inout Traversal at, inout TracedHit hit, int budget) {
-  bool left = true;
-  while (left && budget > 0) {
-    // A loop of no or one turn, since software skips that where no ray at hand needs it.
-    for (int turn = at.alive || at.listing ? 1 : 0; turn < 1; ++turn) {
-      left = next_view(at);
-      --budget;
-    }
-    while (at.alive && !at.listing && budget > 0) {
-      step_cell(at);
-      --budget;
-    }
-    while (at.listing && budget > 0) {
-      step_list(ray, at, hit);
-      --budget;
-#if ANY_HIT
-      if (hit.primitive != NO_PRIMITIVE) return true;
-#endif
-    }
-  }
-  return !left;
-}
+#include "tracing/walk_views.glsl"
 
 void traversal_save(Traversal at, uint word) {
   put_word(word, at.visited | uint(at.view) << 6u | uint(at.level) << 9u |

@@ -41,7 +41,8 @@ std::vector<Settings> variants(Settings settings) {
 
 std::string name(const Settings& s) {
   return fmt::format("{}{}{}{}, {}", fragment_tracer::kStorageNames[size_t(s.storage)], s.decoupled ? " decoupled" : "",
-                     s.skipping ? " skipping" : "", s.binary_search ? " binary" : "", fragment_tracer::kWalkNames[size_t(s.walk)]);
+                     s.skipping ? " skipping" : "", s.binary_search ? " binary" : "",
+                     fragment_tracer::kWalkNames[size_t(s.walk)]);
 }
 
 std::vector<TracedHit> hits_of(tracing::Tracer& tracer, const std::vector<TracedRay>& rays) {
