@@ -63,8 +63,9 @@ class PanoptesFragmentSettings(bpy.types.PropertyGroup):
     steps: IntProperty(name='Steps', description='Pixels across a view', default=32, min=1, max=4096)
     thickness: FloatProperty(
         name='Thickness',
-        description='How far a surface goes on behind its pixel, as a share of the distance from the eye', default=0.02,
-        min=0.0, max=1.0, precision=3)
+        description='How far a surface goes on behind its pixel, as a share of the distance from the eye. With Exact '
+                    'Surfaces, how far about the pixel it is looked for at least',
+        default=0.02, min=0.0, max=1.0, precision=3)
     by_plane: BoolProperty(
         name='Exact Surfaces',
         description='Light meets the surface that a pixel shows, in place of anything at its depth: less is lost, and '
@@ -93,7 +94,11 @@ def draw(column, ours):
     if ours.walk == 'STEPS':
         column.prop(ours, 'steps')
     column.prop(ours, 'storage')
-    column.prop(ours, 'buckets' if ours.storage in {'LLB', 'DLLB'} else 'layers')
+    if ours.storage in {'LLB', 'DLLB'}:
+        column.prop(ours, 'buckets')
+    # With buckets too, where it has to be 0: what a render complains of must be in sight.
+    if ours.storage not in {'LLB', 'DLLB'} or ours.layers:
+        column.prop(ours, 'layers')
     if ours.storage == 'SB':
         column.prop(ours, 'binary_search')
     column.prop(ours, 'decoupled')

@@ -50,6 +50,13 @@ void bind_storage(unsigned binding, const gl::Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id());
 }
 
+// What a buffer texture may address.
+int64_t most_words() {
+  GLint texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  return texels;
+}
+
 // Axes of the faces of a cube: right, up, forward.
 constexpr std::array<std::array<glm::vec3, 3>, 6> kFaces{{{{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}},
                                                           {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}},
@@ -121,7 +128,17 @@ void FragmentTracer::frame(const scene::Bounds& bounds) {
   view_block_.write(0, sizeof block_, &block_);
 }
 
+void FragmentTracer::check_pixels() const {
+  const double words = double(pixels_) * pixel_bytes(settings_) / 4, most = double(most_words());
+  if (words > most)
+    fail("the views have {} pixels, and this graphics driver holds {} in this storage: choose {} pixels a side of the "
+         "cube or fewer, a narrower view of the camera, or fewer buckets",
+         pixels_, int64_t(most * 4 / pixel_bytes(settings_)),
+         std::max(1, int(settings_.side * std::sqrt(most / words))));
+}
+
 void FragmentTracer::build(const tracing::TriangleList& triangles, gl::ProgramCache& programs, gl::PassTimer& timer) {
+  check_pixels();
   frame(triangles.bounds());
   triangles.texture().bind(tracing::kTriangleUnit);
   glBindBufferBase(GL_UNIFORM_BUFFER, tracing::kStructureBlock, view_block_.id());
@@ -129,7 +146,7 @@ void FragmentTracer::build(const tracing::TriangleList& triangles, gl::ProgramCa
   bounds_.reserve(int64_t(pixels_) * 8);
   counts_.reserve(int64_t(lists()) * 4);
   firsts_.reserve(int64_t(lists()) * 4);
-  if (room_ == 0) room_ = pixels_ + pixels_ / 2 + 4096;
+  if (room_ == 0) room_ = uint32_t(std::min<int64_t>(int64_t(pixels_) + 4096, most_fragments()));
   const uint32_t bounds[2] = {0xffffffffu, 0};
   glClearNamedBufferData(bounds_.id(), GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, bounds);
   if (has_buckets(settings_.storage)) {
@@ -176,12 +193,13 @@ void FragmentTracer::draw(bool store, uint32_t triangles, gl::ProgramCache& prog
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+int64_t FragmentTracer::most_fragments() const {
+  const int node = fragment_bytes(settings_) + (settings_.decoupled ? 0 : kDataBytes);
+  return most_words() * 4 / std::max(node, kDataBytes);
+}
+
 void FragmentTracer::reserve_fragments(uint32_t count) {
-  GLint texels = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  const int64_t words = std::max<int64_t>(fragment_bytes(settings_) / 4 + (settings_.decoupled ? 0 : kDataBytes / 4),
-                                          kDataBytes / 4);
-  const int64_t most = texels / words;
+  const int64_t most = most_fragments();
   if (int64_t(count) > most)
     fail("the scene has {} fragments in these views, and this graphics driver holds {}: choose {} pixels a side of the "
          "cube or fewer, or hide objects",

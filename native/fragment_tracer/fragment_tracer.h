@@ -63,6 +63,9 @@ class FragmentTracer : public tracing::Tracer {
   void sort(gl::ProgramCache& programs);
   void link(gl::ProgramCache& programs);
   void build_pyramid(gl::ProgramCache& programs);
+  // Throws Error where the driver cannot address the pixels' lists, with a resolution that fits.
+  void check_pixels() const;
+  int64_t most_fragments() const;  // that the driver can address
   void reserve_fragments(uint32_t count);
 
   Settings settings_;

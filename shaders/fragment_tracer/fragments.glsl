@@ -34,7 +34,7 @@ vec2 hit_depths(Traversal at, vec2 depths) {
 }
 
 #if LINKS == 0
-// The first of `count` fragments from `first` on that is not nearer than `depth`.
+// The first of `count` fragments from `first` on that is not nearer than `depth`, or that is farther (`behind`).
 uint first_from(uint first, uint count, float depth, bool behind) {
   uint low = first, high = first + count;
   while (low < high) {

@@ -275,6 +275,21 @@ TEST(FragmentTracer, GrowsWhereFragmentsAreMoreThanExpected) {
   for (size_t i = 0; i < due.size(); ++i) EXPECT_TRUE(identical(hits[i], due[i], false));
 }
 
+TEST(FragmentTracer, SaysWhichResolutionFitsWhereTheDriverCannotHoldThePixels) {
+  const Room room;
+  tracing_device().assign(room.triangles);
+  Settings settings;
+  settings.side = 4096;
+  settings.buckets = 64;
+  FragmentTracer tracer(settings, room.eye, {});
+  try {
+    tracing_device().build(tracer);
+    FAIL() << "13 billion words have found room";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("pixels a side of the cube or fewer"), std::string::npos) << error.what();
+  }
+}
+
 TEST(FragmentTracer, KeepsTheNearestLayers) {
   tracing_device().assign(layers({10, 20, 30, 40, 50}));
   const std::vector<TracedRay> rays{ray_between({8, 0.1f, 0.1f}, {60, 1.2f, 0.6f}),
