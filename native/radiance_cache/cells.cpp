@@ -27,19 +27,24 @@ constexpr int kLeastDirections = 8;
 void RadianceCache::find_seeds() {
   const uint32_t cells = uint32_t(volume_.volumes().count.y);
   want(seeds_, seeds_texels_, GL_R32UI, int64_t(cells) * 4);
+  want(contents_, int64_t(cells) * 8);
+  if (!settings_.walls) {
+    reach_texels_ = gl::Texture();
+    reach_ = gl::Buffer();
+    reached_ = false;
+  }
+  // Where only part of the scene moves, the rest is reached by what it was.
+  const bool anew = !reach_ || reach_grids_ != grids_;
   {
     gl::PassScope scope(timer_, "radiance_cache_seeds");
     programs_.get(find_seeds_program()).use();
     bind_volume();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, seeds_.id());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, contents_.id());
+    glUniform1i(0, anew);
     gl::dispatch(cells, GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
   }
-  if (!settings_.walls) {
-    reach_texels_ = gl::Texture();
-    reach_ = gl::Buffer();
-  } else if (!reached_ || !reach_) {
-    find_reach();
-  }
+  if (settings_.walls && (anew || !reached_)) find_reach();
 }
 
 void RadianceCache::find_reach() {
@@ -53,6 +58,7 @@ void RadianceCache::find_reach() {
   glUniform1ui(0, voxels);
   gl::dispatch(voxels, GL_TEXTURE_FETCH_BARRIER_BIT);
   reached_ = true;
+  reach_grids_ = grids_;
 }
 
 void RadianceCache::list_cells() {

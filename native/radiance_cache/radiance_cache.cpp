@@ -132,7 +132,7 @@ void RadianceCache::release() {
   tiers_ = {};
   for (gl::Texture* texture : {&met_sides_texels_, &radiosity_texels_, &cells_texels_, &seeds_texels_, &reach_texels_})
     *texture = gl::Texture();
-  for (gl::Buffer* buffer : {&seeds_, &reach_, &met_sides_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
+  for (gl::Buffer* buffer : {&seeds_, &contents_, &reach_, &met_sides_, &radiosity_, &direct_, &cells_, &list_block_, &view_block_,
                             &scales_block_})
     *buffer = gl::Buffer();
 }

@@ -182,12 +182,13 @@ class RadianceCache {
   // With Occupancy::kTiers the first holds the cells that are seen and the second the others, which look in
   // fewer directions; otherwise the first holds all.
   std::array<Tier, 2> tiers_;
-  gl::Buffer seeds_, reach_, met_sides_, radiosity_, direct_, cells_;
+  gl::Buffer seeds_, contents_, reach_, met_sides_, radiosity_, direct_, cells_;
   gl::Texture seeds_texels_, reach_texels_, met_sides_texels_, radiosity_texels_, cells_texels_;
   gl::Buffer list_block_, view_block_, scales_block_;  // CacheVolumes about the list's origin, and about the camera
   Occupancy occupancy_ = Occupancy::kGeometry;  // never kAuto
   bool transmission_ = false;
-  bool reached_ = false;  // reach_ is that of the volume
+  bool reached_ = false;            // reach_ is that of the volume
+  std::vector<Grid> reach_grids_;   // that reach_ and contents_ are of
   ReflectiveMaps reflective_;
 
   CellHistory history_;

@@ -31,7 +31,7 @@ int cell_number(CacheVolume volume, ivec3 at) {
 // A seed as a whole number above 0, at most 512; 0 means that the cell has none. Where cells are
 // listed, the rest of the word tells whether a solid voxel lies in the cell, whether the camera sees
 // something that is lit by it, and whether it came on the list.
-const uint SEED_CODE = 1023u, CELL_OCCUPIED = 1024u, CELL_SEEN = 2048u, CELL_LISTED = 4096u;
+const uint SEED_CODE = 1023u, CELL_OCCUPIED = 1024u, CELL_SEEN = 2048u, CELL_LISTED = 4096u, CELL_CHANGED = 8192u;
 uint seed_code(ivec3 voxel) { return 1u + uint(voxel.x + 8 * (voxel.y + 8 * voxel.z)); }
 
 // The voxel within its cell.

@@ -1,12 +1,12 @@
 // Finds what reaches each empty voxel (reach.glsl): which seeds of the cells about it see its middle.
-// One invocation a voxel.
+// One invocation a voxel; what no cell that has changed is about stays as it is.
 #include "base/invocation.glsl"
 #include "radiance_cache/cells.glsl"
 #include "radiance_cache/reach.glsl"
 #include "radiance_cache/volume.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) writeonly buffer Reach { uint reach[]; };  // by number of voxel
+layout(std430, binding = 0) buffer Reach { uint reach[]; };  // by number of voxel
 layout(binding = 0) uniform usamplerBuffer seeds;  // of all cells
 layout(location = 0) uniform uint count;           // voxels
 
@@ -36,13 +36,16 @@ void main() {
   // The cells that a look-up here can go to: none beyond the far side of its own.
   ivec3 low = max(own - ivec3(lessThanEqual(half_way, ivec3(0))), ivec3(0));
   ivec3 high = min(own + ivec3(greaterThanEqual(half_way, ivec3(0))), volume.cells.xyz - 1);
-  uint bits = 0u, solid = 0u;  // solid: those with solid voxels
+  uint bits = 0u, solid = 0u, about = 0u;  // solid: those with solid voxels
   for (int z = low.z; z <= high.z; ++z)
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x) {
         ivec3 at = ivec3(x, y, z);
-        if ((texelFetch(seeds, cell_number(volume, at)).x & CELL_OCCUPIED) != 0u) solid |= reach_bit(at - own);
+        uint cell = texelFetch(seeds, cell_number(volume, at)).x;
+        about |= cell;
+        if ((cell & CELL_OCCUPIED) != 0u) solid |= reach_bit(at - own);
       }
+  if ((about & CELL_CHANGED) == 0u) return;
   if (holds_voxel(volume, voxel) && !voxel_is_solid(volume, voxel))
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)

@@ -4,7 +4,7 @@
     ./panoptes bench viewport [--scene FILE.blend] [--frames FILE.blend] [--window 640x480] [--repeat N] [--pictures FOLDER] [--json]
 
 Each engine has a Blender of its own, with a window on a virtual display; they run in turns. An edit moves the scene's
-first mesh there and back; --frames names a scene whose next frame is the edit. "first" is the first change in the view,
+first mesh there and back; --frames names a scene whose next frame is the edit, and which is played besides. "first" is the first change in the view,
 "full" the last: then one sample of all pixels is there, of Cycles one path a pixel, of Panoptes one of Real-time. The
 error is sRGB RMSE, in eight bits, against Cycles' view of many samples.
 """
@@ -111,11 +111,24 @@ def measure(options, scene, kind):
     return {"scene": stem, "kind": kind, "size": size, "rows": rows, "edits": edits}
 
 
+def play(options, scene):
+    """Both engines while Blender plays the animation, every frame of it, as coarse as they then are; prints a table."""
+    runs = {engine: [] for engine in engines.ENGINES}
+    for engine in engines.in_turns(options.repeat):
+        found, picture = in_window(options, scene=scene, engine=engine, samples=1, edits=0, kind="play")
+        runs[engine] += found["edits"]
+        save(options, f"viewport_{Path(scene).stem}_played_{engine.lower()}", picture)
+    rows = {engine: {"a second": statistics.median(run["pictures"] / run["seconds"] for run in found),
+                     "pixel width": statistics.median(run["wide"] for run in found)} for engine, found in runs.items()}
+    tables.show(f"viewport: {Path(scene).stem}, played", rows, {"a second": ".2f", "pixel width": ".1f"})
+    return {"scene": Path(scene).stem, "kind": "play", "rows": rows, "runs": runs}
+
+
 def main():
     options = parse_options()
     found = [measure(options, options.scene, "move")]
     if options.frames:
-        found.append(measure(options, options.frames, "frame"))
+        found += [measure(options, options.frames, "frame"), play(options, options.frames)]
     if options.json:
         print(json.dumps({"viewport": found}))
 

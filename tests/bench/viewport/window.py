@@ -3,9 +3,9 @@
 
 blender --factory-startup -P window.py -- JOB.json
 
-The job is a dictionary: scene, engine, samples, edits (a number of them), kind ('move' or 'frame'), out, a folder, and
-screen, the file in which the virtual display keeps its screen. What stands there counts, so engines are measured alike,
-whatever they tell: an edit has arrived in full when the picture changes no more.
+The job is a dictionary: scene, engine, samples, edits (a number of them), kind ('move', 'frame', or 'play': the animation
+is played), out, a folder, and screen, the file in which the virtual display keeps its screen. What stands there counts, so
+engines are measured alike, whatever they tell: an edit has arrived in full when the picture changes no more.
 """
 
 import json
@@ -28,7 +28,11 @@ import engines  # noqa: E402
 # first one may rest for longer in between, while programs are compiled.
 QUIET, FIRST_QUIET, LIMIT = 2.0, 8.0, 120.0
 POLL = 0.02
+# How long an animation is played, and for how long before that without being measured.
+PLAYED, WARM_UP = 12.0, 4.0
 MOVE_METRES = 0.01
+# Blender dithers what it shows by no more than this, of 255.
+DITHER = 2
 
 
 def view():
@@ -63,6 +67,7 @@ class Watch:
         self.screen = screen
         self.picture = None
         self.first = self.last = self.since = 0.0
+        self.pictures = 0
 
     def look(self):
         """Note the picture if it is another."""
@@ -70,12 +75,12 @@ class Watch:
         if self.picture is not None and np.array_equal(found, self.picture):
             return
         now = time.perf_counter()
-        self.picture, self.last = found, now
+        self.picture, self.last, self.pictures = found, now, self.pictures + 1
         self.first = self.first or now
 
     def begin(self):
         """Forget when, but not what."""
-        self.since, self.first, self.last = time.perf_counter(), 0.0, 0.0
+        self.since, self.first, self.last, self.pictures = time.perf_counter(), 0.0, 0.0, 0
 
     def finished(self, quiet=QUIET):
         """Tell whether the picture has changed, and has not done so for `quiet` seconds."""
@@ -114,6 +119,40 @@ def edit(job, number):
     moved.location.x += MOVE_METRES * (1 if number % 2 == 0 else -1)
 
 
+def edits(job, watch, found):
+    """Make one edit after the other, each when the view rests; yield while Blender has to go on."""
+    for number in range(job['edits']):
+        watch.begin()
+        edit(job, number)
+        while not watch.finished():
+            yield
+        found.append({'first': watch.first - watch.since, 'full': watch.last - watch.since})
+
+
+def pixel_width(picture):
+    """How wide the middle of a picture's coarse pixels are, in those of the screen: the mean of runs of one colour."""
+    height, width = picture.shape[:2]
+    middle = picture[height // 4:3 * height // 4, width // 4:3 * width // 4].astype(int)
+    return 1.0 / max(float((np.abs(np.diff(middle, axis=1)) > DITHER).any(axis=2).mean()), 1.0 / width)
+
+
+def play(watch, found):
+    """Play the animation, every frame of it; yield while Blender has to go on."""
+    bpy.context.scene.sync_mode = 'NONE'
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, area=view()):
+        bpy.ops.screen.animation_play()
+    for seconds in (WARM_UP, PLAYED):
+        watch.begin()
+        while time.perf_counter() - watch.since < seconds:
+            watch.look()
+            yield
+    found.append({'pictures': watch.pictures, 'seconds': time.perf_counter() - watch.since,
+                  'wide': pixel_width(watch.picture)})
+    with bpy.context.temp_override(window=window, area=view()):
+        bpy.ops.screen.animation_cancel(restore_frame=False)
+
+
 def measure(job):
     """Yield while Blender has to go on; write what was found in the end."""
     watch = Watch(Screen(job['screen']))
@@ -122,12 +161,7 @@ def measure(job):
     while not watch.finished(FIRST_QUIET):
         yield
     found = []
-    for number in range(job['edits']):
-        watch.begin()
-        edit(job, number)
-        while not watch.finished():
-            yield
-        found.append({'first': watch.first - watch.since, 'full': watch.last - watch.since})
+    yield from play(watch, found) if job['kind'] == 'play' else edits(job, watch, found)
     np.save(os.path.join(job['out'], 'picture.npy'), watch.picture)
     with open(os.path.join(job['out'], 'found.json'), 'w', encoding='utf-8') as file:
         json.dump({'edits': found, 'size': watch.picture.shape[1::-1]}, file)

@@ -120,5 +120,19 @@ TEST_F(CacheFrames, AVolumeThatLagsBehindCatchesUp) {
   EXPECT_LT(apart(moved, whole), apart(before, whole) / 8 + 0.01);
 }
 
+TEST_F(CacheFrames, WhatReachesVoxelsFollowsAWallThatMoves) {
+  const Id white = scene.add_material(lambert(glm::vec3(0.7f)));
+  scene.add_object(box({0, 0, 0}, {0.02f, 1.4f, 0.7f}), {white}, glm::translate(glm::mat4(1), {-0.5f, 0, 0.9f}));
+  r.cache.blend = 0;
+  Picture shown = render(scene, r);
+  for (float x : {-0.1f, 0.35f, -0.5f}) {
+    const Picture before = shown;
+    scene.instances[2].object_to_world = glm::translate(glm::mat4(1), {x, 0, 0.9f});
+    shown = follow([&](scene::Scene& s) { s.set_instances(scene.instances, scene.table); });
+    EXPECT_GT(apart(before, shown), 0.1) << x;
+    EXPECT_LT(apart(shown, fresh()), 1e-4) << x;
+  }
+}
+
 }  // namespace
 }  // namespace panoptes::test
