@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-_NAMES = ('views', 'side', 'camera_width', 'storage', 'buckets', 'layers', 'decoupled', 'skipping', 'binary_search',
+_NAMES = ('views', 'side', 'camera_width', 'storage', 'buckets', 'bounds', 'layers', 'decoupled', 'skipping', 'binary_search',
           'walk', 'steps', 'thickness', 'by_plane')
 
 
@@ -41,9 +41,18 @@ class PanoptesFragmentSettings(bpy.types.PropertyGroup):
         default='DLLB')
     buckets: IntProperty(
         name='Buckets', description='Intervals of depth of a pixel, where the storage has them', default=8, min=1, max=64)
+    bounds: EnumProperty(
+        name='Depth Bounds',
+        description='Where the depths that a pixel divides into intervals come from',
+        items=(
+            ('EXACT', 'Exact', 'From all that the pixel shows'),
+            ('BOXES', 'Boxes', 'From boxes about parts of the scene: built sooner, but light finds its way more slowly'),
+        ),
+        default='EXACT')
     layers: IntProperty(
         name='Layers',
-        description='Layers that a pixel keeps, from the nearest on; 0 keeps all. Not with buckets', default=0, min=0)
+        description='Layers that a pixel keeps, from the nearest on; 0 keeps all. Not with buckets', default=0, min=0,
+        max=256)
     decoupled: BoolProperty(
         name='Decoupled Data', description='What only hits read lies apart from what every test reads', default=True)
     skipping: BoolProperty(
@@ -77,7 +86,7 @@ def settings(scene):
     """Return what the settings of a request by fragment tracing say of it."""
     ours = scene.panoptes.fragment
     found = {name: getattr(ours, name) for name in _NAMES}
-    found.update({name: found[name].lower() for name in ('views', 'walk')})
+    found.update({name: found[name].lower() for name in ('views', 'walk', 'bounds')})
     return {'fragments': found}
 
 
@@ -96,6 +105,7 @@ def draw(column, ours):
     column.prop(ours, 'storage')
     if ours.storage in {'LLB', 'DLLB'}:
         column.prop(ours, 'buckets')
+        column.prop(ours, 'bounds')
     # With buckets too, where it has to be 0: what a render complains of must be in sight.
     if ours.storage not in {'LLB', 'DLLB'} or ours.layers:
         column.prop(ours, 'layers')

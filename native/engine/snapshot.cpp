@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kMagic = 0x53504e50;  // "PNPS"
 // Raised whenever the order or the meaning of what is written below changes.
-constexpr uint32_t kVersion = 18;
+constexpr uint32_t kVersion = 19;
 
 // One description serves both directions: transfer(archive, value) writes or reads.
 class Writer {

@@ -1,6 +1,7 @@
 #include "fragment_tracer/fragment_tracer.h"
 
 #include "base/error.h"
+#include "fragment_tracer/programs.h"
 #include "gl/dispatch.h"
 
 #include <fmt/format.h>
@@ -16,47 +17,6 @@ namespace {
 // Lists up to this length are sorted by insertion.
 constexpr uint32_t kShort = 32;
 
-std::vector<std::string> defines(const Settings& s, int views, bool has_camera) {
-  return {fmt::format("VIEWS {}", views),
-          fmt::format("CAMERA_VIEW {}", int(has_camera)),
-          fmt::format("LINKS {}", links(s.storage)),
-          fmt::format("BUCKETS {}", has_buckets(s.storage) ? s.buckets : 0),
-          fmt::format("DECOUPLED {}", int(s.decoupled)),
-          fmt::format("SKIPPING {}", int(s.skipping)),
-          fmt::format("BINARY {}", int(s.binary_search)),
-          fmt::format("TRAVERSAL {}", int(s.walk)),
-          fmt::format("BY_PLANE {}", int(s.by_plane))};
-}
-
-gl::ProgramSource pass(const Settings& s, int views, bool has_camera, const char* file) {
-  gl::ProgramSource source;
-  source.name = fmt::format("fragments: {}", file);
-  source.stages = {{GL_COMPUTE_SHADER, fmt::format("fragment_tracer/{}", file)}};
-  source.defines = defines(s, views, has_camera);
-  return source;
-}
-
-gl::ProgramSource raster(const Settings& s, int views, bool has_camera, bool store) {
-  gl::ProgramSource source;
-  source.name = "fragments: raster";
-  source.stages = {{GL_VERTEX_SHADER, "fragment_tracer/raster.vert"},
-                   {GL_FRAGMENT_SHADER, "fragment_tracer/raster.frag"}};
-  source.defines = defines(s, views, has_camera);
-  source.defines.push_back(fmt::format("STORE {}", int(store)));
-  return source;
-}
-
-void bind_storage(unsigned binding, const gl::Buffer& buffer) {
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.id());
-}
-
-// What a buffer texture may address.
-int64_t most_words() {
-  GLint texels = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  return texels;
-}
-
 // Axes of the faces of a cube: right, up, forward.
 constexpr std::array<std::array<glm::vec3, 3>, 6> kFaces{{{{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}},
                                                           {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}},
@@ -67,18 +27,9 @@ constexpr std::array<std::array<glm::vec3, 3>, 6> kFaces{{{{{0, 0, -1}, {0, 1, 0
 
 }  // namespace
 
-std::vector<gl::ProgramSource> build_programs(const Settings& settings, int views, bool has_camera) {
-  std::vector<gl::ProgramSource> sources{raster(settings, views, has_camera, true)};
-  if (has_buckets(settings.storage)) sources.push_back(raster(settings, views, has_camera, false));
-  for (const char* file : {"allocate.comp", "scatter.comp", "sort_short.comp", "merge.comp", "link.comp"})
-    sources.push_back(pass(settings, views, has_camera, file));
-  if (settings.walk == Walk::kHierarchy) sources.push_back(pass(settings, views, has_camera, "pyramid.comp"));
-  return sources;
-}
-
 FragmentTracer::FragmentTracer(const Settings& settings, const glm::vec3& centre,
-                               const std::optional<CameraView>& camera, uint32_t room)
-    : settings_(settings), room_(room) {
+                               const std::optional<CameraView>& camera, uint32_t room, int64_t most)
+    : settings_(settings), room_(room), most_(most) {
   settings.check();
   place(centre, camera);
 }
@@ -129,11 +80,12 @@ void FragmentTracer::frame(const scene::Bounds& bounds) {
 }
 
 void FragmentTracer::check_pixels() const {
-  const double words = double(pixels_) * pixel_bytes(settings_) / 4, most = double(most_words());
+  const double words_of_each = std::max(pixel_bytes(settings_) / 4, settings_.layers);
+  const double words = double(pixels_) * words_of_each, most = double(most_words());
   if (words > most)
     fail("the views have {} pixels, and this graphics driver holds {} in this storage: choose {} pixels a side of the "
-         "cube or fewer, a narrower view of the camera, or fewer buckets",
-         pixels_, int64_t(most * 4 / pixel_bytes(settings_)),
+         "cube or fewer, a narrower view of the camera, or fewer buckets or layers",
+         pixels_, int64_t(most / words_of_each),
          std::max(1, int(settings_.side * std::sqrt(most / words))));
 }
 
@@ -149,11 +101,17 @@ void FragmentTracer::build(const tracing::TriangleList& triangles, gl::ProgramCa
   if (room_ == 0) room_ = uint32_t(std::min<int64_t>(int64_t(pixels_) + 4096, most_fragments()));
   const uint32_t bounds[2] = {0xffffffffu, 0};
   glClearNamedBufferData(bounds_.id(), GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, bounds);
+  sift(triangles.count(), programs, timer);
   if (has_buckets(settings_.storage)) {
     gl::PassScope scope(timer, "structure_bounds");
-    draw(false, triangles.count(), programs);
+    if (settings_.bounds == Bounds::kBoxes) draw_boxes(triangles, programs);
+    else draw(Drawing::kBounds, programs);
   }
-  store(triangles.count(), programs, timer);
+  if (settings_.layers > 0) {
+    gl::PassScope scope(timer, "structure_nearest");
+    find_nearest(programs);
+  }
+  store(programs, timer);
   {
     gl::PassScope scope(timer, "structure_sort");
     sort(programs);
@@ -164,38 +122,17 @@ void FragmentTracer::build(const tracing::TriangleList& triangles, gl::ProgramCa
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-void FragmentTracer::draw(bool store, uint32_t triangles, gl::ProgramCache& programs) {
-  if (!framebuffer_) framebuffer_ = gl::Framebuffer::make();
-  if (!vertex_array_) vertex_array_ = gl::VertexArray::make();
-  programs.get(raster(settings_, views_, has_camera_, store)).use();
-  bind_storage(0, counter_buffer_);
-  bind_storage(1, bounds_);
-  if (store) {
-    bind_storage(3, entries_);
-    bind_storage(4, counts_);
-    bind_storage(5, data_);
-  }
-  glUniform1ui(1, room_);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glBindVertexArray(vertex_array_.id());
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_SCISSOR_TEST);
-  for (int view = 0; view < views_; ++view) {
-    const glm::ivec4 size = block_.views[view].size;
-    glNamedFramebufferParameteri(framebuffer_.id(), GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
-    glNamedFramebufferParameteri(framebuffer_.id(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
-    glViewport(0, 0, size.x, size.y);
-    glUniform1i(0, view);
-    glDrawArrays(GL_TRIANGLES, 0, GLsizei(triangles * 3));
-  }
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+// What a buffer texture may address.
+int64_t FragmentTracer::most_words() {
+  GLint texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  return texels;
 }
 
 int64_t FragmentTracer::most_fragments() const {
   const int node = fragment_bytes(settings_) + (settings_.decoupled ? 0 : kDataBytes);
-  return most_words() * 4 / std::max(node, kDataBytes);
+  const int64_t addressed = most_words() * 4 / std::max(node, kDataBytes);
+  return most_ > 0 ? std::min(most_, addressed) : addressed;
 }
 
 void FragmentTracer::reserve_fragments(uint32_t count) {
@@ -214,13 +151,13 @@ void FragmentTracer::reserve_fragments(uint32_t count) {
     pixel_texture_ = gl::Texture(GL_R32UI, pixel_words_);
 }
 
-void FragmentTracer::store(uint32_t triangles, gl::ProgramCache& programs, gl::PassTimer& timer) {
+void FragmentTracer::store(gl::ProgramCache& programs, gl::PassTimer& timer) {
   gl::PassScope scope(timer, "structure_raster");
   reserve_fragments(room_);
   while (true) {
     counter_buffer_.clear();
     counts_.clear();
-    draw(true, triangles, programs);
+    draw(Drawing::kStore, programs);
     counter_buffer_.read(0, sizeof counters_, &counters_);
     if (counters_.fragments <= room_) return;
     reserve_fragments(counters_.fragments);
@@ -231,7 +168,7 @@ void FragmentTracer::sort(gl::ProgramCache& programs) {
   constexpr GLbitfield kBarriers = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT;
   const uint32_t fragments = counters_.fragments;
   const auto run = [&](const char* file, uint32_t count, std::optional<uint32_t> number, int from) {
-    programs.get(pass(settings_, views_, has_camera_, file)).use();
+    programs.get(build_program(settings_, views_, has_camera_, file)).use();
     bind_storage(0, counter_buffer_);
     bind_storage(3, entries_);
     bind_storage(4, counts_);
@@ -258,7 +195,7 @@ void FragmentTracer::sort(gl::ProgramCache& programs) {
 void FragmentTracer::link(gl::ProgramCache& programs) {
   const uint32_t nothing = has_buckets(settings_.storage) || links(settings_.storage) ? shared::NO_FRAGMENT : 0;
   glClearNamedBufferData(pixel_words_.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &nothing);
-  programs.get(pass(settings_, views_, has_camera_, "link.comp")).use();
+  programs.get(build_program(settings_, views_, has_camera_, "link.comp")).use();
   bind_storage(0, counter_buffer_);
   bind_storage(1, bounds_);
   bind_storage(3, entries_);
@@ -275,7 +212,7 @@ void FragmentTracer::link(gl::ProgramCache& programs) {
 
 void FragmentTracer::build_pyramid(gl::ProgramCache& programs) {
   if (levels_.reserve(int64_t(cells_) * 8)) level_texture_ = gl::Texture(GL_RG32UI, levels_);
-  programs.get(pass(settings_, views_, has_camera_, "pyramid.comp")).use();
+  programs.get(build_program(settings_, views_, has_camera_, "pyramid.comp")).use();
   bind_storage(1, bounds_);
   bind_storage(3, levels_);
   for (int view = 0; view < views_; ++view) {
@@ -290,7 +227,7 @@ void FragmentTracer::build_pyramid(gl::ProgramCache& programs) {
 }
 
 void FragmentTracer::add_to(gl::ProgramSource& source) const {
-  for (const std::string& define : defines(settings_, views_, has_camera_)) source.defines.push_back(define);
+  add_defines(settings_, views_, has_camera_, source);
   source.snippets["generated/tracer.glsl"] = "#include \"fragment_tracer/traverse.glsl\"\n";
 }
 

@@ -44,6 +44,13 @@ enum class Views {
 };
 constexpr std::array<std::string_view, 3> kViewsNames{"cube_and_camera", "cube", "camera"};
 
+// Where the depths of a pixel's buckets come from.
+enum class Bounds {
+  kExact,  // its fragments
+  kBoxes,  // boxes about triangles that follow each other in the list: drawn sooner, and buckets lie less well
+};
+constexpr std::array<std::string_view, 2> kBoundsNames{"exact", "boxes"};
+
 struct Settings {
   Views views = Views::kCubeAndCamera;
   int side = 256;          // pixels of a face of the cube, 1 .. 4096
@@ -51,7 +58,8 @@ struct Settings {
   int camera_width = 0;
   Storage storage = Storage::kDoubleBucketList;
   int buckets = 8;         // of a pixel, over its depths, 1 .. 64
-  int layers = 0;          // fragments that a pixel keeps, from the nearest on (a k-buffer); 0: all. Not with buckets.
+  Bounds bounds = Bounds::kExact;
+  int layers = 0;          // fragments that a pixel keeps, from the nearest on (a k-buffer), to 256; 0: all. Not with buckets.
   bool decoupled = true;   // what only hits read lies apart from what every test reads
   bool skipping = true;    // passes over pixels and buckets whose depths the ray does not reach
   bool binary_search = true;  // with kArray

@@ -88,6 +88,7 @@ fragment_tracer::Settings fragment_settings(const py::dict& dict) {
   members.read("camera_width", s.camera_width);
   members.read("storage", s.storage, ft::kStorageNames);
   members.read("buckets", s.buckets);
+  members.read("bounds", s.bounds, ft::kBoundsNames);
   members.read("layers", s.layers);
   members.read("decoupled", s.decoupled);
   members.read("skipping", s.skipping);

@@ -6,4 +6,5 @@ void main() {
   if (list >= count || counts[list] == 0u) return;
   firsts[list] = atomicAdd(counters.placed, counts[list]);
   atomicMax(counters.longest, counts[list]);
+  atomicAdd(counters.used, 1u);
 }

@@ -1,15 +1,21 @@
-// A triangle at a pixel's centre. STORE 0: notes the pixel's depth bounds; 1: stores the fragment, for
-// fragment_tracer/scatter.comp to bring to its list.
+// A triangle at a pixel's centre.
+#define BOUND 0   // notes the pixel's depth bounds
+#define NEAREST 1 // notes the depths of the nearest fragments
+#define STORE 2   // stores the fragment, for fragment_tracer/scatter.comp to bring to its list
 #include "fragment_tracer/views.glsl"
 
 layout(location = 0) uniform int view;
 layout(location = 1) uniform uint capacity;
+layout(location = 2) uniform uint layers;  // with NEAREST, or KEEP: that a pixel keeps
 flat in uint primitive;
 in vec2 barycentrics;
 
 layout(std430, binding = 0) buffer Counters { FragmentCounters counters; };
 layout(std430, binding = 1) buffer Bounds { uint bounds[]; };  // bits of the least and the greatest depth
-#if STORE
+#if PASS == NEAREST || KEEP
+layout(std430, binding = 2) buffer Nearest { uint nearest[]; };  // of pixels: bits of depths, in their order
+#endif
+#if PASS == STORE
 layout(std430, binding = 3) writeonly buffer Entries { FragmentEntry entries[]; };
 layout(std430, binding = 4) buffer Counts { uint counts[]; };  // of lists
 layout(std430, binding = 5) writeonly buffer Data { uint data[]; };
@@ -17,13 +23,22 @@ layout(std430, binding = 5) writeonly buffer Data { uint data[]; };
 
 void main() {
   float depth = 1.0 / gl_FragCoord.w;
+  uint bits = floatBitsToUint(depth);  // those of positive floats are ordered as these
   uint pixel = pixel_number(view, ivec2(gl_FragCoord.xy));
-#if !STORE || !BUCKETS
-  // Bits of positive floats are ordered as these.
-  atomicMin(bounds[2u * pixel], floatBitsToUint(depth));
-  atomicMax(bounds[2u * pixel + 1u], floatBitsToUint(depth));
+#if PASS == NEAREST
+  // Each place keeps the lesser of what it has and what comes, and the greater goes on to the next.
+  uint first = pixel * layers, end = first + layers;
+  if (bits >= nearest[end - 1u]) return;
+  for (uint i = first; i < end && bits != NO_FRAGMENT; ++i) bits = max(bits, atomicMin(nearest[i], bits));
+#else
+#if PASS == STORE && KEEP
+  if (bits > nearest[pixel * layers + layers - 1u]) return;
 #endif
-#if STORE
+#if PASS == BOUND || !BUCKETS
+  atomicMin(bounds[2u * pixel], bits);
+  atomicMax(bounds[2u * pixel + 1u], bits);
+#endif
+#if PASS == STORE
 #if BUCKETS
   vec2 range = uintBitsToFloat(uvec2(bounds[2u * pixel], bounds[2u * pixel + 1u]));
   uint list = pixel * uint(BUCKETS) + bucket_of(depth, range);
@@ -36,5 +51,6 @@ void main() {
   data[3u * place] = primitive;
   data[3u * place + 1u] = floatBitsToUint(barycentrics.x);
   data[3u * place + 2u] = floatBitsToUint(barycentrics.y);
+#endif
 #endif
 }

@@ -1,13 +1,15 @@
-// The list's triangles in one view.
+// The triangles that a view sees.
 #include "fragment_tracer/views.glsl"
 #include "tracing/triangles.glsl"
 
+layout(binding = 1) uniform usamplerBuffer sifted;  // triangles, view by view
 layout(location = 0) uniform int view;
+layout(location = 3) uniform int first;  // of the view
 flat out uint primitive;
 out vec2 barycentrics;  // of the second and third vertex
 
 void main() {
-  primitive = uint(gl_VertexID) / 3u;
+  primitive = texelFetch(sifted, first + gl_VertexID / 3).x;
   int corner = gl_VertexID % 3;
   Corners corners = fetch_corners(primitive);
   vec3 position = corner == 0 ? corners.p0 : corner == 1 ? corners.p1 : corners.p2;
@@ -16,6 +18,4 @@ void main() {
   vec2 size = vec2(block.views[view].size.xy);
   // In the middle of the clip range: what lies behind the eye is left out by the sides of the view alone.
   gl_Position = vec4(place.xy / size * 2.0 - place.zz, 0.0, place.z);
-  // A triangle that nobody sees has no fragments.
-  if ((corners.flags & TRIANGLE_SEEN_BY) == 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

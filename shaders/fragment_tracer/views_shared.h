@@ -16,6 +16,8 @@ struct FragmentView {
 SHARED_ASSERT_SIZE(FragmentView, 64)
 
 const uint MOST_VIEWS = 7u;
+const uint SIFTED_AT_ONCE = 16u;   // triangles that an invocation asks which views see
+const uint TRIANGLES_OF_BOX = 64u; // with bounds of depth by boxes
 const uint MOST_LEVELS = 16u;  // of a view's pyramid of depth bounds
 
 struct FragmentViews {
@@ -33,7 +35,7 @@ struct FragmentCounters {
   uint fragments;  // of all views, those that found no room among them
   uint placed;     // fragments that have a place in the sorted runs
   uint longest;    // fragments of the longest list
-  uint unused;
+  uint used;       // lists that have fragments
 };
 SHARED_ASSERT_SIZE(FragmentCounters, 16)
 

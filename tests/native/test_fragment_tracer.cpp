@@ -1,11 +1,9 @@
 // The structure of fragments: the hit cases of Figure 6.5, that all variants find the same, lists of any length, what
 // pixels lose, and the way from view to view.
 #include "base/error.h"
-#include "fragment_tracer/fragment_tracer.h"
+#include "fragment_scenes.h"
 #include "rays/brute_force.h"
 #include "rays/comparison.h"
-#include "rays/ray_sets.h"
-#include "rays/shared_device.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -45,36 +43,6 @@ std::string name(const Settings& s) {
                      fragment_tracer::kWalkNames[size_t(s.walk)]);
 }
 
-std::vector<TracedHit> hits_of(tracing::Tracer& tracer, const std::vector<TracedRay>& rays) {
-  tracing_device().build(tracer);
-  return tracing_device().trace(tracer, rays).hits;
-}
-
-TracedRay ray_between(const glm::vec3& from, const glm::vec3& to) {
-  const glm::vec3 d = to - from;
-  return {from.x, from.y, from.z, 0, d.x, d.y, d.z, 1, shared::NO_PRIMITIVE, shared::TRIANGLE_SEEN_BY, 0, 0};
-}
-
-// Triangles that fill the face of the cube along +x, square to it, at these distances from the eye.
-Triangles layers(const std::vector<float>& depths) {
-  Triangles triangles;
-  for (float depth : depths)
-    triangles.push_back(make_triangle({depth, -10 * depth, -10 * depth}, {depth, 30 * depth, -10 * depth},
-                                      {depth, -10 * depth, 30 * depth}));
-  return triangles;
-}
-
-// The thesis' own test of a fragment, without thickness.
-Settings by_depth() {
-  Settings settings;
-  settings.views = Views::kCube;
-  settings.side = 64;
-  settings.by_plane = false;
-  settings.thickness = 0;
-  settings.buckets = 4;
-  return settings;
-}
-
 constexpr uint32_t kMiss = shared::NO_PRIMITIVE;
 
 struct HitCase {
@@ -109,29 +77,6 @@ TEST(FragmentTracer, MeetsTheHitCasesOfTheThesis) {
     for (size_t i = 0; i < kHitCases.size(); ++i)
       EXPECT_EQ(hits[i].primitive, kHitCases[i].due) << kHitCases[i].name << ": " << name(settings);
   }
-}
-
-// A closed room with things in it: a ray that meets nothing has been lost.
-struct Room {
-  Triangles triangles;
-  glm::vec3 eye{0.1f, -0.2f, 0.15f};
-  Room() {
-    add_box(triangles, glm::vec3(-4, -3, -2), glm::vec3(4, 3, 2));
-    add_box(triangles, {1, -1, -2}, {2, 1, -0.5f});
-    add_box(triangles, {-3, 1, -2}, {-2, 2, 1});
-    add_surface(triangles, 24, 24, [](float u, float v) {
-      return glm::vec3(-2 + 3 * u, -2.5f + 2 * v, 0.4f * std::sin(5 * u) * std::cos(4 * v) - 1);
-    });
-  }
-};
-
-std::vector<TracedRay> rays_in_room(uint32_t count) {
-  Random random(11);
-  std::vector<TracedRay> rays;
-  for (uint32_t i = 0; i < count; ++i)
-    rays.push_back(make_ray(random.in_box(glm::vec3(-3.9f, -2.9f, -1.9f), glm::vec3(3.9f, 2.9f, 1.9f)),
-                            random.in_box(glm::vec3(-1), glm::vec3(1))));
-  return rays;
 }
 
 CameraView camera_view() {
@@ -273,36 +218,6 @@ TEST(FragmentTracer, GrowsWhereFragmentsAreMoreThanExpected) {
   EXPECT_GT(narrow.fragments(), 8u);
   EXPECT_EQ(narrow.fragments(), roomy.fragments());
   for (size_t i = 0; i < due.size(); ++i) EXPECT_TRUE(identical(hits[i], due[i], false));
-}
-
-TEST(FragmentTracer, SaysWhichResolutionFitsWhereTheDriverCannotHoldThePixels) {
-  const Room room;
-  tracing_device().assign(room.triangles);
-  Settings settings;
-  settings.side = 4096;
-  settings.buckets = 64;
-  FragmentTracer tracer(settings, room.eye, {});
-  try {
-    tracing_device().build(tracer);
-    FAIL() << "13 billion words have found room";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("pixels a side of the cube or fewer"), std::string::npos) << error.what();
-  }
-}
-
-TEST(FragmentTracer, KeepsTheNearestLayers) {
-  tracing_device().assign(layers({10, 20, 30, 40, 50}));
-  const std::vector<TracedRay> rays{ray_between({8, 0.1f, 0.1f}, {60, 1.2f, 0.6f}),
-                                    ray_between({60, 1.2f, 0.6f}, {8, 0.1f, 0.1f})};
-  for (Storage storage : {Storage::kArray, Storage::kList, Storage::kDoubleList}) {
-    Settings settings = by_depth();
-    settings.storage = storage;
-    settings.layers = 2;
-    FragmentTracer tracer(settings, glm::vec3(0), {});
-    const std::vector<TracedHit> hits = hits_of(tracer, rays);
-    EXPECT_EQ(hits[0].primitive, 0u);
-    EXPECT_EQ(hits[1].primitive, 1u);
-  }
 }
 
 TEST(FragmentTracer, RaysGoOverFromViewToView) {

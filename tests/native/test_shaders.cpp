@@ -370,6 +370,8 @@ class Shaders : public ::testing::Test {
       settings.walk = fragment_tracer::Walk(bits / 5 % 3);
       settings.decoupled = settings.by_plane = bits / 15 % 2;
       settings.skipping = settings.binary_search = bits / 30 % 2;
+      settings.bounds = fragment_tracer::Bounds(bits / 15 % 2);
+      if (!has_buckets(settings.storage)) settings.layers = bits / 15 % 2 * 4;
       const bool camera = bits % 2;
       for (gl::ProgramSource& source : fragment_tracer::build_programs(settings, camera ? 7 : 6, camera))
         add(std::move(source));
