@@ -82,6 +82,8 @@ void FragmentTracer::draw(Drawing drawing, gl::ProgramCache& programs) {
   sifted_texture_.bind(tracing::kStructureUnit);
   glUniform1ui(1, room_);
   glUniform1ui(2, uint32_t(settings_.layers));
+  // So that the counter never wraps.
+  glUniform1ui(4, uint32_t(std::min<int64_t>(4 * most_fragments(), int64_t(1) << 31)));
   uint32_t first = 0;
   for (int view = 0; view < views_; ++view) {
     look_from(view);

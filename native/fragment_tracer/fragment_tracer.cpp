@@ -138,7 +138,7 @@ int64_t FragmentTracer::most_fragments() const {
 void FragmentTracer::reserve_fragments(uint32_t count) {
   const int64_t most = most_fragments();
   if (int64_t(count) > most)
-    fail("the scene has {} fragments in these views, and this graphics driver holds {}: choose {} pixels a side of the "
+    fail("the scene has at least {} fragments in these views, and this graphics driver holds {}: choose {} pixels a side of the "
          "cube or fewer, or hide objects",
          count, most, std::max(1, int(settings_.side * std::sqrt(double(most) / count))));
   room_ = uint32_t(std::min<int64_t>(most, int64_t(count) + count / 4));

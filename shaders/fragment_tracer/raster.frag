@@ -7,6 +7,7 @@
 layout(location = 0) uniform int view;
 layout(location = 1) uniform uint capacity;
 layout(location = 2) uniform uint layers;  // with NEAREST, or KEEP: that a pixel keeps
+layout(location = 4) uniform uint most;    // that are counted: more cannot be held whatever their number
 flat in uint primitive;
 in vec2 barycentrics;
 
@@ -45,12 +46,15 @@ void main() {
 #else
   uint list = pixel;
 #endif
+  if (counters.fragments >= most) return;
   uint place = atomicAdd(counters.fragments, 1u);
   if (place >= capacity) return;  // counted all the same: the host makes room and starts again
   entries[place] = FragmentEntry(depth, list, atomicAdd(counts[list], 1u), primitive);
+  // Where a triangle comes near the eye, rounding takes them out of it.
+  float b1 = clamp(barycentrics.x, 0.0, 1.0), b2 = clamp(barycentrics.y, 0.0, 1.0 - b1);
   data[3u * place] = primitive;
-  data[3u * place + 1u] = floatBitsToUint(barycentrics.x);
-  data[3u * place + 2u] = floatBitsToUint(barycentrics.y);
+  data[3u * place + 1u] = floatBitsToUint(b1);
+  data[3u * place + 2u] = floatBitsToUint(b2);
 #endif
 #endif
 }

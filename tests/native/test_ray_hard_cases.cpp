@@ -1,4 +1,6 @@
 // Every row of the catalogue of hard cases (rays/hard_cases.h) through every ray tracer.
+#include "base/error.h"
+#include "fragment_tracer/fragment_tracer.h"
 #include "rays/brute_force.h"
 #include "rays/comparison.h"
 #include "rays/hard_cases.h"
@@ -100,6 +102,35 @@ TEST_P(RayHardCases, NoTracerLosesOrInventsAHit) {
     expect_same(c, device.trace(*tracer, c.row.rays, {}, budget).hits, false, "interrupted");
     device.build(*tracer);
     expect_same(c, device.trace(*tracer, c.row.rays).hits, false, "built again");
+  }
+}
+
+// Fragments are an approximation, so what they lose is a table (`./panoptes bench rays --hard-cases`). But whatever they
+// meet is finite, lies on the ray, and is the same in each build.
+TEST_P(RayHardCases, FragmentsAreFiniteAndTheSameTwice) {
+  const PreparedCase& c = prepare(GetParam());
+  TracingDevice& device = tracing_device();
+  for (bool by_plane : {true, false}) {
+    fragment_tracer::Settings settings;
+    settings.views = fragment_tracer::Views::kCube;
+    settings.side = 16;
+    settings.by_plane = by_plane;
+    fragment_tracer::FragmentTracer tracer(settings, glm::vec3(0.013f, -0.017f, 0.011f), {});
+    std::vector<TracedHit> first;
+    for (int build = 0; build < 2; ++build) {
+      try {
+        device.build(tracer);
+      } catch (const Error& error) {
+        // 100 000 surfaces in a pixel: it says what would fit.
+        EXPECT_NE(std::string(error.what()).find("pixels a side of the cube or fewer"), std::string::npos);
+        EXPECT_GT(c.row.triangles.size(), 50'000u) << error.what();
+        return;
+      }
+      const std::vector<TracedHit> hits = device.trace(tracer, c.row.rays).hits;
+      for (size_t i = 0; i < hits.size() && !HasFailure(); ++i) expect_finite(c.row.rays[i], hits[i]);
+      if (build == 0) first = hits;
+      EXPECT_EQ(count_unlike(hits, first, false), 0u) << "by plane " << by_plane;
+    }
   }
 }
 

@@ -55,7 +55,8 @@ def test_the_speed_report_compares_with_embree():
 
 
 @pytest.mark.parametrize("arguments", [
-    ("--table", "7.1"), ("--table", "7.3"), ("--figure", "7.8"), ("--figure", "7.10")])
+    ("--table", "6.1"), ("--table", "6.2"), ("--table", "7.1"), ("--table", "7.2"), ("--table", "7.3"), ("--figure", "6.11"),
+    ("--figure", "6.12"), ("--figure", "7.8"), ("--figure", "7.10"), ("--figure", "7.11")])
 def test_the_thesis_tables_are_filled(arguments):
     (table,) = tables(*arguments, "--scene", "box_room", "--rays", "1024")
     assert table["rows"]

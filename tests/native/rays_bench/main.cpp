@@ -12,6 +12,13 @@ namespace {
 void report(TracingDevice& device, const BenchOptions& options, const Emit& emit) {
   switch (options.report) {
     case BenchReport::kSpeed: return speed_report(device, options, emit);
+    case BenchReport::kTable61: return table_6_1(device, options, emit);
+    case BenchReport::kTable62: return table_6_2(device, options, emit);
+    case BenchReport::kFigure611: return figure_6_11(device, options, emit);
+    case BenchReport::kFigure612: return figure_6_12(device, options, emit);
+    case BenchReport::kTable72: return table_7_2(device, options, emit);
+    case BenchReport::kFigure711: return figure_7_11(device, options, emit);
+    case BenchReport::kHardCases: return hard_cases_report(device, options, emit);
     case BenchReport::kTable71: return table_7_1(device, options, emit);
     case BenchReport::kTable73: return table_7_3(device, options, emit);
     case BenchReport::kFigure78: return figure_7_8(device, options, emit);

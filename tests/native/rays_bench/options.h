@@ -7,7 +7,10 @@
 
 namespace panoptes::test {
 
-enum class BenchReport { kSpeed, kTable71, kTable73, kFigure78, kFigure710, kDeform };
+enum class BenchReport {
+  kSpeed, kTable61, kTable62, kFigure611, kFigure612, kTable71, kTable72, kTable73, kFigure78, kFigure710, kFigure711,
+  kDeform, kHardCases
+};
 
 struct BenchOptions {
   BenchReport report = BenchReport::kSpeed;

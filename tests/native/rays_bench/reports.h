@@ -50,4 +50,19 @@ void figure_7_10(TracingDevice& device, const BenchOptions& options, const Emit&
 // Frames of a deforming scene, everything built anew for each.
 void deform_report(TracingDevice& device, const BenchOptions& options, const Emit& emit);
 
+// Thesis, Table 6.1: fragments, layers, build and trace; and bounds of depth by boxes.
+void table_6_1(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Table 6.2: the bytes of each storage beside the thesis' formulas.
+void table_6_2(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Figure 6.11: build and trace beside spatial structures.
+void figure_6_11(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Figure 6.12: the storages in a single view.
+void figure_6_12(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Table 7.2: fragments beside primitives in the same views.
+void table_7_2(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// Thesis, Figure 7.11: memory of both by resolution.
+void figure_7_11(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+// What fragments lose and make up in the catalogue of hard cases.
+void hard_cases_report(TracingDevice& device, const BenchOptions& options, const Emit& emit);
+
 }  // namespace panoptes::test
