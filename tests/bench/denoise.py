@@ -52,19 +52,10 @@ def parse_options():
     return options
 
 
-def save(scene, path):
-    """Writes all passes of what was rendered last."""
-    image = scene.render.image_settings
-    if hasattr(image, "media_type"):  # since Blender 5.0 the format depends on it
-        image.media_type = "MULTI_LAYER_IMAGE"
-    image.file_format, image.color_depth = "OPEN_EXR_MULTILAYER", "32"
-    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
-
-
 def render(scene, samples, path):
     engines.choose_paths(scene, samples, BOUNCES)
     bpy.ops.render.render()
-    save(scene, path)
+    engines.save_passes(scene, path)
     return json.loads(scene.panoptes.last_stats)
 
 

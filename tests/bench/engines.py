@@ -83,6 +83,15 @@ def save_picture(scene, path):
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)
 
 
+def save_passes(scene, path):
+    """Writes all passes of what was rendered last."""
+    image = scene.render.image_settings
+    if hasattr(image, "media_type"):  # since Blender 5.0 the format depends on it
+        image.media_type = "MULTI_LAYER_IMAGE"
+    image.file_format, image.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+
+
 def measure(scene):
     """Seconds of one render, by the clock and of the processor."""
     began, used = time.perf_counter(), time.process_time()

@@ -267,3 +267,13 @@ def test_what_the_denoiser_makes_of_few_samples():
     for row in found["denoise"]:
         assert row["denoised_srgb"] < row["noisy_srgb"] and row["worth"] > row["samples"]
         assert row["denoiser_ms"] > 0.0 and 0.0 < row["estimate"] < 10.0
+
+
+def test_what_fragments_lose_beside_primitives(tmp_path):
+    found = bench("fragments.py", "--scene", ROOT / "blend_scenes" / "doorway.blend", "--size", "48x27", "--samples", "2",
+                  "--reference", "8", "--variant", "all", "--variant", "one view, one layer", "--pictures", tmp_path)["fragments"]
+    assert found["primitives"]["energy"] == 1.0 and found["primitives"]["apart"] == 0.0
+    assert 0.0 < found["all"]["apart"] < found["one view, one layer"]["apart"]
+    for row in found.values():
+        assert row["trace ms"] > 0.0 and row["error"] > 0.0
+    assert shown(tmp_path / "fragments_doorway_all.png").shape[:2] == (27, 48)
