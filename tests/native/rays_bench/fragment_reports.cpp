@@ -323,6 +323,13 @@ Loss loss_of(const std::vector<TracedHit>& hits, const std::vector<TracedHit>& d
   return loss;
 }
 
+// Near the middle, not in it, where modelled scenes have surfaces.
+glm::vec3 eye_for(const Triangles& triangles) {
+  const scene::Bounds bounds = bounds_of(triangles);
+  if (bounds.empty()) return glm::vec3(0);
+  return glm::vec3(bounds.low) + glm::vec3(bounds.high - bounds.low) * glm::vec3(0.513f, 0.483f, 0.507f);
+}
+
 }  // namespace
 
 void hard_cases_report(TracingDevice& device, const BenchOptions&, const Emit& emit) {
@@ -345,7 +352,7 @@ void hard_cases_report(TracingDevice& device, const BenchOptions&, const Emit& e
       settings.views = Views::kCube;
       settings.side = kSmall;
       settings.by_plane = by_plane;
-      FragmentTracer tracer(settings, glm::vec3(0.013f, -0.017f, 0.011f), {});
+      FragmentTracer tracer(settings, eye_for(row.triangles), {});
       try {
         device.build(tracer);
         const Loss loss = loss_of(device.trace(tracer, row.rays).hits, due);
