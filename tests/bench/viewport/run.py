@@ -118,9 +118,9 @@ def play(options, scene):
         found, picture = in_window(options, scene=scene, engine=engine, samples=1, edits=0, kind="play")
         runs[engine] += found["edits"]
         save(options, f"viewport_{Path(scene).stem}_played_{engine.lower()}", picture)
-    rows = {engine: {"a second": statistics.median(run["pictures"] / run["seconds"] for run in found),
-                     "pixel width": statistics.median(run["wide"] for run in found)} for engine, found in runs.items()}
-    tables.show(f"viewport: {Path(scene).stem}, played", rows, {"a second": ".2f", "pixel width": ".1f"})
+    rows = {engine: {"a second": statistics.median(run["pictures"] / run["seconds"] for run in found)}
+            for engine, found in runs.items()}
+    tables.show(f"viewport: {Path(scene).stem}, played", rows, {"a second": ".2f"})
     return {"scene": Path(scene).stem, "kind": "play", "rows": rows, "runs": runs}
 
 

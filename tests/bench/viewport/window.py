@@ -31,8 +31,6 @@ POLL = 0.02
 # How long an animation is played, and for how long before that without being measured.
 PLAYED, WARM_UP = 12.0, 4.0
 MOVE_METRES = 0.01
-# Blender dithers what it shows by no more than this, of 255.
-DITHER = 2
 
 
 def view():
@@ -129,13 +127,6 @@ def edits(job, watch, found):
         found.append({'first': watch.first - watch.since, 'full': watch.last - watch.since})
 
 
-def pixel_width(picture):
-    """How wide the middle of a picture's coarse pixels are, in those of the screen: the mean of runs of one colour."""
-    height, width = picture.shape[:2]
-    middle = picture[height // 4:3 * height // 4, width // 4:3 * width // 4].astype(int)
-    return 1.0 / max(float((np.abs(np.diff(middle, axis=1)) > DITHER).any(axis=2).mean()), 1.0 / width)
-
-
 def play(watch, found):
     """Play the animation, every frame of it; yield while Blender has to go on."""
     bpy.context.scene.sync_mode = 'NONE'
@@ -147,8 +138,7 @@ def play(watch, found):
         while time.perf_counter() - watch.since < seconds:
             watch.look()
             yield
-    found.append({'pictures': watch.pictures, 'seconds': time.perf_counter() - watch.since,
-                  'wide': pixel_width(watch.picture)})
+    found.append({'pictures': watch.pictures, 'seconds': time.perf_counter() - watch.since})
     with bpy.context.temp_override(window=window, area=view()):
         bpy.ops.screen.animation_cancel(restore_frame=False)
 
