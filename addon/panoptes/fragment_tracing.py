@@ -46,7 +46,7 @@ class PanoptesFragmentSettings(bpy.types.PropertyGroup):
         description='Where the depths that a pixel divides into intervals come from',
         items=(
             ('EXACT', 'Exact', 'From all that the pixel shows'),
-            ('BOXES', 'Boxes', 'From boxes about parts of the scene: built sooner, but light finds its way more slowly'),
+            ('BOXES', 'Boxes', 'From boxes about parts of the scene: no sooner, unless triangles are many and boxes small'),
         ),
         default='EXACT')
     layers: IntProperty(

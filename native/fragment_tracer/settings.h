@@ -47,7 +47,7 @@ constexpr std::array<std::string_view, 3> kViewsNames{"cube_and_camera", "cube",
 // Where the depths of a pixel's buckets come from.
 enum class Bounds {
   kExact,  // its fragments
-  kBoxes,  // boxes about triangles that follow each other in the list: drawn sooner, and buckets lie less well
+  kBoxes,  // boxes about triangles that follow each other in the list (docs/fragments.md tells when that is slower)
 };
 constexpr std::array<std::string_view, 2> kBoundsNames{"exact", "boxes"};
 

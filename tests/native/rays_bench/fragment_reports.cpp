@@ -27,7 +27,7 @@ using fragment_tracer::Walk;
 
 constexpr double kMega = 1e-6;
 constexpr int kBuilds = 3;
-// Of Figure 6.12, and the resolution at which the thesis' tables have theirs.
+// Pixels a side of the cube's faces, and across the camera's view where nothing else is said.
 constexpr int kSide = 256;
 
 struct Eye {
