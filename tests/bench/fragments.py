@@ -21,12 +21,12 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "metrics")]
 import engines  # noqa: E402
 import images  # noqa: E402
 import metrics  # noqa: E402
+import plots  # noqa: E402
 import tables  # noqa: E402
 
 BOUNCES = 2
@@ -44,6 +44,12 @@ VARIANTS = {
     "by depth, thickness .1": {"by_plane": False, "thickness": 0.1},
     "32 steps a view": {"walk": "STEPS"},
 }
+# Which are side by side in pictures, and what they show.
+STRIPS = {
+    "views": ("Combined", ("primitives", *list(VARIANTS)[:6])),
+    "occlusion": ("AO", ("primitives", *list(VARIANTS)[:6])),
+    "thickness": ("Combined", ("primitives", "all", *list(VARIANTS)[6:])),
+}
 
 
 def parse_options():
@@ -53,7 +59,7 @@ def parse_options():
     parser.add_argument("--samples", type=int, default=16, help="of each picture")
     parser.add_argument("--reference", dest="repeat", type=int, default=256, help="samples of the finished picture, where none is there")
     parser.add_argument("--variant", action="append", choices=sorted(VARIANTS), help="one of them; may be repeated")
-    parser.add_argument("--pictures", metavar="FOLDER", type=Path, help="write each as PNG")
+    parser.add_argument("--pictures", metavar="FOLDER", type=Path, help="write them side by side as PNG")
     parser.add_argument("--json", action="store_true", help="print every measurement as JSON")
     options = parser.parse_args(engines.own_arguments())
     engines.complete(parser, options)
@@ -90,26 +96,13 @@ def finished(scene, options, folder):
     return passes["Combined"], f"{options.repeat} samples by primitives"
 
 
-def save_picture(options, name, picture):
-    if not options.pictures:
-        return
-    height, width = picture.shape[:2]
-    image = bpy.data.images.new(name, width, height)
-    shown = np.clip(picture[::-1], 0.0, 1.0)
-    shown = np.where(shown < 0.0031308, 12.92 * shown, 1.055 * np.maximum(shown, 0.0031308) ** (1 / 2.4) - 0.055)
-    image.pixels.foreach_set(np.dstack([shown, np.ones((height, width))]).astype(np.float32).ravel())
-    image.filepath_raw, image.file_format = str(options.pictures / f"{name}.png"), "PNG"
-    image.save()
-    bpy.data.images.remove(image)
-
-
 def energy(passes, exact, name):
     whole = float(exact[name].mean())
     return float(passes[name].mean()) / whole if whole > 0.0 else None
 
 
 def measure(scene, options, reference, folder):
-    stem, rows, exact = Path(options.scene).stem, {}, None
+    rows, pictures, exact = {}, {}, None
     chosen = {name: VARIANTS[name] for name in options.variant or VARIANTS}
     for name, variant in {"primitives": None, **chosen}.items():
         passes, stats = render(scene, options.samples, folder / "picture.exr",
@@ -120,8 +113,10 @@ def measure(scene, options, reference, folder):
                       "AO": float(passes["AO"].mean()), "apart": metrics.relative_rmse(picture, exact["Combined"]),
                       "error": metrics.relative_rmse(picture, reference), "build ms": stats["build_ms"],
                       "trace ms": stats["trace_ms"]}
-        letters = "".join(c if c.isalnum() else "_" for c in name)
-        save_picture(options, f"fragments_{stem}_{letters}", picture)
+        pictures[name] = passes
+    for strip, (entry, names) in STRIPS.items():
+        shown = {name: pictures[name][entry] for name in names if name in pictures}
+        plots.strip(options.pictures, f"{strip}_{Path(options.scene).stem}", shown)
     return rows
 
 

@@ -276,4 +276,6 @@ def test_what_fragments_lose_beside_primitives(tmp_path):
     assert 0.0 < found["all"]["apart"] < found["one view, one layer"]["apart"]
     for row in found.values():
         assert row["trace ms"] > 0.0 and row["error"] > 0.0
-    assert shown(tmp_path / "fragments_doorway_all.png").shape[:2] == (27, 48)
+    exact, fewest, whole = of_strip(tmp_path / "views_doorway.png", 3, (48, 27))
+    assert abs(whole - exact).mean() < abs(fewest - exact).mean()
+    of_strip(tmp_path / "occlusion_doorway.png", 3, (48, 27))
