@@ -115,7 +115,8 @@ def measure(scene, options, reference, folder):
                       "trace ms": stats["trace_ms"]}
         pictures[name] = passes
     for strip, (entry, names) in STRIPS.items():
-        shown = {name: pictures[name][entry] for name in names if name in pictures}
+        # Files have rows from the top, strips take them from the bottom.
+        shown = {name: pictures[name][entry][::-1] for name in names if name in pictures}
         plots.strip(options.pictures, f"{strip}_{Path(options.scene).stem}", shown)
     return rows
 
